@@ -1,0 +1,1 @@
+//! Reads and writes PPM; decodes PNG, JPEG and TIFF; saves atomically. Knows only pixels and files.

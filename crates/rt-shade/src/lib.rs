@@ -1,0 +1,1 @@
+//! Phong shading and texture mapping. Knows no shapes.

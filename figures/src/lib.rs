@@ -1,0 +1,1 @@
+//! Draws the six figures of the report, and scenes of your own.
