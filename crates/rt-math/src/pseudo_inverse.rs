@@ -1,0 +1,152 @@
+//! The Moore-Penrose pseudo-inverse of a 3 x 3 matrix.
+//!
+//! One-sided Jacobi (Hestenes): plane rotations from the right make the columns of `A V` orthogonal, `V` being the
+//! product of the rotations. With `g_k` the columns of `A V` and `v_k` those of `V`, the singular values are `|g_k|`
+//! and `A+ = sum over k of v_k g_k^T / |g_k|^2`, taken over the singular values that count as not zero.
+
+use glam::{DMat3, DVec3};
+
+/// A pseudo-inverse and the rank it was made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PseudoInverse {
+    /// The pseudo-inverse itself.
+    pub matrix: DMat3,
+    /// Rank of the matrix that was inverted, 0 to 3.
+    pub rank: usize,
+}
+
+/// Returns the Moore-Penrose pseudo-inverse of `m` and the rank of `m`.
+///
+/// A matrix with an infinite or NaN entry has none: every entry of the answer is NaN and the rank is 0.
+///
+/// ```
+/// use glam::{DMat3, DVec3};
+/// use rt_math::pseudo_inverse;
+///
+/// // A rank-1 matrix: A+ = A^T / |A|^2.
+/// let flat = DMat3::from_diagonal(DVec3::new(0.0, 4.0, 0.0));
+/// let answer = pseudo_inverse(flat);
+/// assert_eq!(answer.rank, 1);
+/// assert_eq!(answer.matrix, DMat3::from_diagonal(DVec3::new(0.0, 0.25, 0.0)));
+/// ```
+pub fn pseudo_inverse(m: DMat3) -> PseudoInverse {
+    pseudo_inverse_with_tolerance(m, 3.0 * f64::EPSILON)
+}
+
+/// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.
+///
+/// This is the meaning that `rcond` has in `numpy.linalg.pinv`. A matrix with an infinite or NaN entry has no
+/// pseudo-inverse: every entry of the answer is NaN and the rank is 0.
+///
+/// Source: M. R. Hestenes, "Inversion of Matrices by Biorthogonalization and Related Results", 1958.
+pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
+    if !m.is_finite() {
+        return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
+    }
+    let largest = m.to_cols_array().into_iter().fold(0.0, |sum: f64, x| sum.max(x.abs()));
+    if largest == 0.0 {
+        return PseudoInverse { matrix: DMat3::ZERO, rank: 0 };
+    }
+    // Scaled to a largest entry near 2^500, no square overflows and only columns 2^-1000 times smaller underflow.
+    let shift = 500 - exponent(largest);
+    let mut g = [m.x_axis, m.y_axis, m.z_axis].map(|column| scale(column, shift));
+    let mut v = [DVec3::X, DVec3::Y, DVec3::Z];
+    orthogonalize(&mut g, &mut v);
+
+    let sigma = g.map(DVec3::length);
+    let threshold = rtol * sigma[0].max(sigma[1]).max(sigma[2]);
+    let mut matrix = DMat3::ZERO;
+    let mut rank = 0;
+    for k in 0..3 {
+        if sigma[k] > threshold {
+            let u = g[k] / sigma[k] / sigma[k];
+            matrix += DMat3::from_cols(v[k] * u.x, v[k] * u.y, v[k] * u.z);
+            rank += 1;
+        }
+    }
+    let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|column| scale(column, shift));
+    PseudoInverse { matrix: DMat3::from_cols(columns[0], columns[1], columns[2]), rank }
+}
+
+/// Rotates pairs of the columns of `g`, and of `v` alike, until the columns of `g` are orthogonal.
+fn orthogonalize(g: &mut [DVec3; 3], v: &mut [DVec3; 3]) {
+    // Convergence is quadratic: 3 x 3 matrices need 4 to 8 sweeps.
+    for _ in 0..30 {
+        let mut rotated = false;
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            let (alpha, beta, gamma) = (g[p].length_squared(), g[q].length_squared(), g[p].dot(g[q]));
+            if gamma.abs() <= f64::EPSILON * alpha.sqrt() * beta.sqrt() {
+                continue;
+            }
+            rotated = true;
+            let zeta = (beta - alpha) / gamma * 0.5;
+            // From 2^30 on, sqrt(1 + zeta^2) rounds to |zeta|, and zeta^2 could overflow.
+            let root = if zeta.abs() < f64::from(1 << 30) { (1.0 + zeta * zeta).sqrt() } else { zeta.abs() };
+            let t = 1.0f64.copysign(zeta) / (zeta.abs() + root);
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            let s = c * t;
+            for columns in [&mut *g, &mut *v] {
+                let (x, y) = (columns[p], columns[q]);
+                columns[p] = x * c - y * s;
+                columns[q] = x * s + y * c;
+            }
+        }
+        if !rotated {
+            return;
+        }
+    }
+}
+
+/// `x` times `2^shift`, exact unless the result leaves the normal range; `shift` within -2100..=2100.
+fn scale(x: DVec3, shift: i32) -> DVec3 {
+    let third = shift / 3;
+    x * power_of_two(shift - 2 * third) * power_of_two(third) * power_of_two(third)
+}
+
+/// `2^n` for `n` in -1022..=1023.
+fn power_of_two(n: i32) -> f64 {
+    f64::from_bits(u64::try_from(1023 + n).expect("n >= -1022") << 52)
+}
+
+/// The exponent `e` of the positive finite `x`: `2^e <= x < 2^(e+1)`.
+fn exponent(x: f64) -> i32 {
+    if x < f64::MIN_POSITIVE {
+        return exponent(x * power_of_two(54)) - 54;
+    }
+    i32::try_from(x.to_bits() >> 52).expect("eleven bits") - 1023
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_of_a_rotation_is_its_transpose() {
+        let rotation = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, -1.2, 2.5);
+        let answer = pseudo_inverse(rotation);
+        assert_eq!(answer.rank, 3);
+        assert!(answer.matrix.abs_diff_eq(rotation.transpose(), 8.0 * f64::EPSILON), "{answer:?}");
+    }
+
+    #[test]
+    fn rank_two_meets_the_penrose_conditions() {
+        let m = DMat3::from_cols_array(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+        let PseudoInverse { matrix, rank } = pseudo_inverse(m);
+        assert_eq!(rank, 2);
+        assert!((m * matrix * m).abs_diff_eq(m, 1e-13), "{matrix}");
+        assert!((matrix * m * matrix).abs_diff_eq(matrix, 1e-13), "{matrix}");
+        assert!((m * matrix).abs_diff_eq((m * matrix).transpose(), 1e-13), "{matrix}");
+        assert!((matrix * m).abs_diff_eq((matrix * m).transpose(), 1e-13), "{matrix}");
+    }
+
+    #[test]
+    fn ends_of_the_exponent_range_are_scaled() {
+        for x in [f64::MAX, 1e200, 1.0, 1e-200, 1e-300] {
+            let answer = pseudo_inverse(DMat3::from_diagonal(DVec3::splat(x)));
+            assert_eq!(answer.rank, 3, "{x}");
+            assert_eq!(answer.matrix, DMat3::from_diagonal(DVec3::splat(1.0 / x)), "{x}");
+        }
+        assert_eq!(pseudo_inverse(DMat3::NAN).rank, 0);
+        assert!(pseudo_inverse(DMat3::NAN).matrix.is_nan());
+    }
+}
