@@ -1,1 +1,26 @@
-//! Phong shading and texture mapping. Knows no shapes.
+//! Phong shading, the mapping of textures onto spheres, and colours. Knows no shapes.
+//!
+//! Colours are linear RGB in a [`glam::DVec3`], 1.0 = full; nothing applies a gamma. Every result is the same
+//! bits on every platform: only additions, multiplications, divisions and square roots are used, which IEEE 754
+//! rounds correctly, and no function of the system's mathematics library.
+//!
+//! ```
+//! use glam::DVec3;
+//! use rt_shade::{Material, PointLight, color, phong};
+//!
+//! let material = Material { ambient: 0.1, diffuse: 0.9, specular: 0.0, shininess: 1.0 };
+//! let lamp = PointLight { position: DVec3::new(0.0, 0.0, 5.0), color: DVec3::ONE };
+//! let (point, direction, normal) = (DVec3::ZERO, DVec3::NEG_Z, DVec3::Z);
+//! let shaded = phong(point, direction, normal, DVec3::new(1.0, 0.5, 0.0), &material, &[lamp]);
+//! assert_eq!(shaded.to_array().map(|c| color::to_sample(c, 255)), [255, 128, 0]);
+//! ```
+
+pub mod color;
+mod mapping;
+mod phong;
+mod power;
+mod texture;
+
+pub use mapping::{sphere_uv, texture_uv};
+pub use phong::{Material, PointLight, phong};
+pub use texture::Texture;
