@@ -1,0 +1,92 @@
+//! Writing: the bytes are those that netpbm's `pnmtopnm` and `pnmtopnm -plain` write, so that `cmp` compares pictures.
+
+use std::io::{self, Write};
+
+use crate::pixmap::{Pixmap, Samples};
+
+/// How the raster is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// P6: one byte a sample where `maxval <= 255`, else two, the high one first.
+    Raw,
+    /// P3: decimal numbers, three to five times the size.
+    Plain,
+}
+
+/// Writes the picture with its own `maxval`, in large pieces; `out` needs no buffer of its own.
+///
+/// # Errors
+/// Whatever `out` reports.
+///
+/// ```
+/// use rt_io::{Pixmap, ppm};
+/// let pixmap = Pixmap::new(1, 1, 255, vec![1, 2, 30]).unwrap();
+/// let mut bytes = Vec::new();
+/// ppm::write(&pixmap, ppm::Encoding::Plain, &mut bytes).unwrap();
+/// assert_eq!(bytes, b"P3\n1 1\n255\n1 2 30 \n");
+/// ```
+pub fn write(pixmap: &Pixmap, encoding: Encoding, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
+    let magic = match encoding {
+        Encoding::Raw => "P6",
+        Encoding::Plain => "P3",
+    };
+    write!(out, "{magic}\n{} {}\n{}\n", pixmap.width(), pixmap.height(), pixmap.maxval())?;
+    match (encoding, pixmap.raw()) {
+        (Encoding::Raw, Samples::Eight(samples)) => out.write_all(samples),
+        (Encoding::Raw, Samples::Sixteen(samples)) => write_pairs(samples, out),
+        (Encoding::Plain, Samples::Eight(samples)) => write_plain(pixmap, samples, out),
+        (Encoding::Plain, Samples::Sixteen(samples)) => write_plain(pixmap, samples, out),
+    }
+}
+
+/// Bytes gathered before they are handed on.
+const PIECE: usize = 1 << 16;
+
+fn write_pairs(samples: &[u16], out: &mut (impl Write + ?Sized)) -> io::Result<()> {
+    let mut bytes = Vec::with_capacity(PIECE);
+    for piece in samples.chunks(PIECE / 2) {
+        bytes.clear();
+        bytes.extend(piece.iter().flat_map(|sample| sample.to_be_bytes()));
+        out.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// Each number is followed by a space. A line ends with the row, or before that after as many whole pixels as netpbm
+/// puts on one: what fits in 79 bytes if a number took one byte less than `maxval` with its space does.
+fn write_plain<S: Copy + Into<u16>>(
+    pixmap: &Pixmap,
+    samples: &[S],
+    out: &mut (impl Write + ?Sized),
+) -> io::Result<()> {
+    let digits = pixmap.maxval().ilog10() as usize + 1;
+    let fit = 79 / digits;
+    let line = fit - fit % 3;
+    let mut text = Vec::with_capacity(PIECE + 1024);
+    for row in samples.chunks_exact(3 * pixmap.width()) {
+        for piece in row.chunks(line) {
+            for &sample in piece {
+                push_decimal(sample.into(), &mut text);
+                text.push(b' ');
+            }
+            text.push(b'\n');
+            if text.len() >= PIECE {
+                out.write_all(&text)?;
+                text.clear();
+            }
+        }
+    }
+    out.write_all(&text)
+}
+
+/// Appends `value` in decimal.
+fn push_decimal(value: u16, text: &mut Vec<u8>) {
+    let digit = |unit: u16| b'0' + (value / unit % 10) as u8;
+    match value {
+        0..10 => text.push(digit(1)),
+        10..100 => text.extend([digit(10), digit(1)]),
+        100..1000 => text.extend([digit(100), digit(10), digit(1)]),
+        1000..10000 => text.extend([digit(1000), digit(100), digit(10), digit(1)]),
+        _ => text.extend([digit(10000), digit(1000), digit(100), digit(10), digit(1)]),
+    }
+}

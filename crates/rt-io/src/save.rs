@@ -1,0 +1,247 @@
+//! Saving a file so that nothing, be it a killed process or a full disk, leaves half of it.
+//!
+//! The bytes go to a temporary file beside the target, reach the disk, and take the target's place in one step, a rename
+//! within one folder. A temporary is called `.NAME.ID.tmp` and is locked by the process that writes it. When that
+//! process dies, the lock goes with it; the next save of the same target finds the temporary unlocked and removes it.
+//! The lock, unlike a process number in the name, also tells the living from the dead between machines that share a
+//! folder.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, BufWriter, Write};
+use std::path::{self, Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Why a file was not saved. An existing file is as it was before.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SaveError {
+    /// The path names a folder.
+    #[error("{} is a folder, not a file", path.display())]
+    Folder {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// The folder of the file does not exist.
+    #[error("{}: the folder {} does not exist; create it first", path.display(), folder.display())]
+    MissingFolder {
+        /// The path as given.
+        path: PathBuf,
+        /// The folder that is missing.
+        folder: PathBuf,
+    },
+    /// The place cannot be written to: no permission, a read-only file or folder, a circle of links.
+    #[error("{}: cannot be written", path.display())]
+    Open {
+        /// The path as given.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// Writing failed on the way: a full disk, a closed pipe, or an error of the writing closure itself.
+    #[error("{}: writing failed", path.display())]
+    Write {
+        /// The path as given.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+}
+
+/// Writes the file at `path` by `write`, whole or not at all.
+///
+/// Until the last moment an existing file stays untouched, and it keeps its permissions; a new one gets those of any
+/// newly created file. A symbolic link is followed, and its target replaced. What is not a regular file (a pipe,
+/// `/dev/stdout`, `/dev/full`) is written directly.
+///
+/// A process killed inside leaves a temporary file, which the next save of the same path removes. `write` gets a buffered
+/// writer, and need not flush it.
+///
+/// # Errors
+/// [`SaveError`] names the path and the cause; no temporary file is left.
+///
+/// ```
+/// # fn main() -> Result<(), rt_io::SaveError> {
+/// let path = std::env::temp_dir().join("rt-io-save-example.txt");
+/// rt_io::save_atomically(&path, |out| out.write_all(b"all of it"))?;
+/// assert_eq!(std::fs::read(&path).unwrap(), b"all of it");
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok(())
+/// # }
+/// ```
+pub fn save_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), SaveError> {
+    let open_error = |source| SaveError::Open { path: path.to_path_buf(), source };
+    let write_error = |source| SaveError::Write { path: path.to_path_buf(), source };
+    if path.to_string_lossy().ends_with(path::is_separator) {
+        return Err(SaveError::Folder { path: path.to_path_buf() });
+    }
+
+    let (target, permissions) = match resolve(path).map_err(open_error)? {
+        Target::Folder => return Err(SaveError::Folder { path: path.to_path_buf() }),
+        Target::Device(device) => {
+            // Appending, so that `>> file` behind /dev/stdout keeps what it holds; a pipe has no end to mind.
+            let mut file = OpenOptions::new().append(true).open(device).map_err(open_error)?;
+            return write_all(&mut file, write).map_err(write_error);
+        }
+        Target::New(target) => (target, None),
+        Target::File(target) => {
+            // A rename would ask the folder alone; a file that may not be written is not replaced either.
+            let file = OpenOptions::new().write(true).open(&target).map_err(open_error)?;
+            let permissions = file.metadata().map_err(open_error)?.permissions();
+            (target, Some(permissions))
+        }
+    };
+
+    let folder = match target.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let name = temporary_name(&target);
+    remove_stale(folder, &name);
+    let mut temporary = Temporary::create(folder, &name).map_err(|source| {
+        if source.kind() == io::ErrorKind::NotFound && !folder.is_dir() {
+            SaveError::MissingFolder { path: path.to_path_buf(), folder: folder.to_path_buf() }
+        } else {
+            open_error(source)
+        }
+    })?;
+    write_all(&mut temporary.file, write).map_err(write_error)?;
+    if let Some(permissions) = permissions
+        && temporary.file.metadata().map_err(write_error)?.permissions() != permissions
+    {
+        temporary.file.set_permissions(permissions).map_err(write_error)?;
+    }
+    temporary.file.sync_all().map_err(write_error)?;
+    fs::rename(&temporary.path, &target).map_err(write_error)?;
+    temporary.renamed = true;
+    Ok(())
+}
+
+fn write_all(file: &mut File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, file);
+    match write(&mut out) {
+        Ok(()) => out.flush(),
+        Err(error) => {
+            // Nothing more is to be written, not even by the drop of the buffer.
+            drop(out.into_parts());
+            Err(error)
+        }
+    }
+}
+
+/// What stands at the end of a path's links.
+enum Target {
+    /// A regular file.
+    File(PathBuf),
+    /// Nothing yet.
+    New(PathBuf),
+    /// Anything that is written to and not replaced.
+    Device(PathBuf),
+    Folder,
+}
+
+/// As many links as Linux follows.
+const MOST_LINKS: usize = 40;
+
+fn resolve(path: &Path) -> io::Result<Target> {
+    let mut path = path.to_path_buf();
+    for _ in 0..=MOST_LINKS {
+        // An open file of a process, such as /dev/stdout: even if it is a regular one, others hold it open.
+        if path.starts_with("/proc") || path.starts_with("/dev/fd") {
+            return Ok(Target::Device(path));
+        }
+        let metadata = match fs::symlink_metadata(&path) {
+            Ok(metadata) => metadata,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Target::New(path)),
+            Err(error) => return Err(error),
+        };
+        if metadata.is_file() {
+            return Ok(Target::File(path));
+        } else if metadata.is_dir() {
+            return Ok(Target::Folder);
+        } else if !metadata.is_symlink() {
+            return Ok(Target::Device(path));
+        }
+        let link = fs::read_link(&path)?;
+        path.pop();
+        path.push(link);
+    }
+    Err(io::Error::other("too many symbolic links"))
+}
+
+/// What all temporaries of `target` begin with. Two targets may share it, at worst one removes the other's stale ones.
+fn temporary_name(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    // A file name is at most 255 bytes nearly everywhere; the rest of ours takes under 30.
+    let length = name.floor_char_boundary(200);
+    format!(".{}.", &name[..length])
+}
+
+/// Removes the temporaries that begin with `name` and that no living process holds. Whatever fails here is no reason not
+/// to save.
+fn remove_stale(folder: &Path, name: &str) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let is_temporary = entry.file_name().to_str().is_some_and(|found| {
+            found.strip_prefix(name).and_then(|rest| rest.strip_suffix(".tmp")).is_some_and(is_id)
+        });
+        if is_temporary
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(file) = OpenOptions::new().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn id(number: u32) -> String {
+    format!("{:08x}{number:08x}", std::process::id())
+}
+
+fn is_id(text: &str) -> bool {
+    text.len() == 16 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+}
+
+/// A locked temporary file, removed when dropped unless it was renamed.
+struct Temporary {
+    path: PathBuf,
+    file: File,
+    renamed: bool,
+}
+
+impl Temporary {
+    fn create(folder: &Path, name: &str) -> io::Result<Self> {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        loop {
+            let path = folder.join(format!("{name}{}.tmp", id(NEXT.fetch_add(1, Ordering::Relaxed))));
+            let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => file,
+                // Another machine's process of the same number, or a stale one that could not be removed.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+                Err(error) => return Err(error),
+            };
+            match file.try_lock() {
+                Ok(()) => {}
+                // Somebody's clean-up saw the file before it was locked, and removes it.
+                Err(TryLockError::WouldBlock) => continue,
+                // A file system without locks: nobody's clean-up can lock the file either, so nobody removes it.
+                Err(TryLockError::Error(_)) => {}
+            }
+            // Once the file is locked nobody removes it; before, somebody may have.
+            if path.exists() {
+                return Ok(Self { path, file, renamed: false });
+            }
+        }
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.renamed {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
