@@ -1,11 +1,15 @@
 //! Spheres, triangles and the minimal bounding-sphere tree, with exact verdicts.
 
 mod enclosing;
+mod inside;
+mod plane;
 mod ray;
 mod sphere;
 mod triangle;
 
 pub use enclosing::{Enclosing, enclosing_sphere};
+pub use inside::{Inside, inside_triangle};
+pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
-pub use sphere::Sphere;
-pub use triangle::Triangle;
+pub use sphere::{Side, Sphere};
+pub use triangle::{Triangle, Verdict};
