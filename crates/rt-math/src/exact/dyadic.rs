@@ -1,0 +1,785 @@
+//! Exact numbers of fixed size on the stack: a sign and an integer times a power of two.
+//!
+//! Every finite double is such a number, and so are sums, differences and products of doubles: a polynomial of doubles
+//! has an exact value here, over- and underflow included. A value is a run of 64-bit limbs, of which only the
+//! live ones are worked on, at a position that is a whole number of limbs; so numbers are aligned by construction, no
+//! operation shifts bits, and trailing zero limbs are dropped. In the usual case (doubles of like magnitude) a
+//! number has a handful of limbs, whatever the capacity.
+//!
+//! Quotients and square roots are not dyadic, but their correctly rounded double is found exactly: the leading 64 bits of
+//! the operands enclose the result so tightly that at most one midpoint between two doubles lies in the enclosure, and
+//! one exact comparison with that midpoint decides. There is no loop, and an exact tie is seen as equality.
+
+use core::cmp::Ordering;
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// An exact number: an integer of at most `LIMBS` 64-bit limbs times a power of two, with a sign.
+///
+/// # How many limbs
+///
+/// A number of which the highest bit has the weight 2ᵗ and the lowest set bit 2ᵇ takes at most `(t - b) / 64 + 2`
+/// limbs (the two ends may each stick into a limb); so
+///
+/// - a double takes 2;
+/// - a product of two numbers takes at most the sum of their limbs;
+/// - a sum takes its span: with all terms bounded by 2ᵗ in magnitude and multiples of 2ᵇ, a sum of up to `k` terms takes
+///   at most `(t + log2 k - b) / 64 + 2`.
+///
+/// Each kernel derives its `LIMBS` from the exponents of its inputs by this rule, for any doubles, which makes an overflow
+/// impossible; a finite double is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴. The
+/// methods that round state what they need besides.
+///
+/// # Panics
+/// An operation whose result does not fit panics. The rule above excludes it.
+#[derive(Clone)]
+pub struct Dyadic<const LIMBS: usize> {
+    negative: bool,
+    /// The weight of `limbs[0]` is `2^(64 base)`.
+    base: i32,
+    /// The number of live limbs. The first and the last live limb are not zero, so a value has one representation.
+    len: usize,
+    limbs: [u64; LIMBS],
+}
+
+impl<const LIMBS: usize> Dyadic<LIMBS> {
+    /// Zero.
+    pub const ZERO: Self = Self { negative: false, base: 0, len: 0, limbs: [0; LIMBS] };
+
+    /// The exact value of a finite double; infinity is read as 2¹⁰²⁴ (its place in the sequence of doubles), and NaN has
+    /// no meaning. `LIMBS` must be at least 2.
+    #[must_use]
+    pub fn from_f64(x: f64) -> Self {
+        const { assert!(LIMBS >= 2) };
+        let bits = x.to_bits();
+        let biased = ((bits >> 52) & 0x7ff) as i32;
+        let fraction = bits & ((1 << 52) - 1);
+        let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
+        let exponent = biased.max(1) - 1075;
+        let wide = u128::from(mantissa) << exponent.rem_euclid(64);
+        let mut limbs = [0; LIMBS];
+        (limbs[0], limbs[1]) = (low(wide), high(wide));
+        Self { negative: x.is_sign_negative(), base: exponent.div_euclid(64), len: 2, limbs }.normal()
+    }
+
+    /// 2ᵏ.
+    #[must_use]
+    pub fn power_of_two(k: i32) -> Self {
+        let mut limbs = [0; LIMBS];
+        limbs[0] = 1 << k.rem_euclid(64);
+        Self { negative: false, base: k.div_euclid(64), len: 1, limbs }
+    }
+
+    /// The value times 2ᵏ; takes at most one limb more.
+    #[must_use]
+    pub fn scale(&self, k: i32) -> Self {
+        self * &Self::power_of_two(k)
+    }
+
+    /// How the value compares with zero: `Less` is negative.
+    #[must_use]
+    pub fn sign(&self) -> Ordering {
+        match (self.len, self.negative) {
+            (0, _) => Ordering::Equal,
+            (_, true) => Ordering::Less,
+            (_, false) => Ordering::Greater,
+        }
+    }
+
+    /// The magnitude.
+    #[must_use]
+    pub fn abs(mut self) -> Self {
+        self.negative = false;
+        self
+    }
+
+    /// The square; the same as a product with itself.
+    #[must_use]
+    pub fn square(&self) -> Self {
+        self * self
+    }
+
+    /// The number of live limbs: at most `LIMBS`.
+    #[must_use]
+    pub fn limbs(&self) -> usize {
+        self.len
+    }
+
+    /// The correctly rounded double: ties to even, subnormals and overflow to infinity included. Zero gives +0.0, and a
+    /// value that underflows keeps its sign.
+    #[must_use]
+    pub fn to_f64(&self) -> f64 {
+        let Some(leading) = self.leading() else { return 0.0 };
+        let magnitude = round(u128::from(leading.bits), leading.exponent, leading.sticky);
+        if self.negative { -magnitude } else { magnitude }
+    }
+
+    /// The correctly rounded quotient `numerator / denominator`, with ties, range and zero as in [`to_f64`].
+    ///
+    /// The denominator must not be zero (zero gives NaN). With `n` and `d` limbs it needs
+    /// `LIMBS >= max(n + 1, d + 2)`.
+    ///
+    /// [`to_f64`]: Self::to_f64
+    #[must_use]
+    pub fn quotient(numerator: &Self, denominator: &Self) -> f64 {
+        let Some(d) = denominator.leading() else { return f64::NAN };
+        let Some(n) = numerator.leading() else { return 0.0 };
+        let (lower, upper) = enclose(n.interval(), d.interval());
+        let magnitude = decide(lower, upper, |twice_midpoint: &Self| {
+            (numerator + numerator).cmp_magnitude(&(twice_midpoint * denominator))
+        });
+        if numerator.negative == denominator.negative { magnitude } else { -magnitude }
+    }
+
+    /// The correctly rounded value of `(p + √r) / q`, or of `(p - √r) / q` if `minus`, with ties, range and zero as in
+    /// [`to_f64`].
+    ///
+    /// The radicand must not be negative and `q` not zero (the answer is NaN then). Let all of `p`, `√r` and `2 m q` be
+    /// below 2ᵗ in magnitude and multiples of 2ᵇ (for `√r`: `r` a multiple of 2²ᵇ), for every double or midpoint `m` next to the
+    /// result; then `LIMBS >= (2 (t + 2) - 2 b) / 64 + 2` is enough. If `p` and the root cancel, `q (p ∓ √r)` must not
+    /// be zero unless the result is, which holds by itself.
+    ///
+    /// [`to_f64`]: Self::to_f64
+    #[must_use]
+    pub fn root(p: &Self, minus: bool, r: &Self, q: &Self) -> f64 {
+        let (Some(q_leading), Ordering::Equal | Ordering::Greater) = (q.leading(), r.sign()) else {
+            return f64::NAN;
+        };
+        let (Some(p_leading), Some(r_leading)) = (p.leading(), r.leading()) else {
+            if r.len == 0 {
+                return Self::quotient(p, q);
+            }
+            let (lower, upper) =
+                enclose(r.leading().map_or(Interval::ZERO, Leading::sqrt), q_leading.interval());
+            let magnitude = decide(lower, upper, |twice_midpoint: &Self| {
+                (r + r).scale(1).cmp_magnitude(&(twice_midpoint * q).square())
+            });
+            return if minus == q.negative { magnitude } else { -magnitude };
+        };
+        let sum = p_leading.interval().plus(r_leading.sqrt());
+        let cancels = p.negative != minus;
+        let (numerator_negative, (lower, upper)) = if cancels {
+            // (p ± √r) / q = (p² - r) / (q (p ∓ √r)), where the last factor does not cancel
+            let difference = p.square() - r;
+            let Some(leading) = difference.leading() else { return 0.0 };
+            let negative = difference.negative != p.negative;
+            (negative, enclose(leading.interval(), sum.times(q_leading.interval())))
+        } else {
+            (p.negative, enclose(sum, q_leading.interval()))
+        };
+        let magnitude = decide(lower, upper, |twice_midpoint: &Self| {
+            // s (p ± √r) against m |q|, s the sign that makes it positive: twice, ±2√r against 2 m |q| - 2 s p
+            let twice_p = if numerator_negative { -(p + p) } else { p + p };
+            let rest = (twice_midpoint * q).abs() - twice_p;
+            let four_r = (r + r).scale(1);
+            if minus == numerator_negative {
+                if rest.negative { Ordering::Greater } else { four_r.cmp_magnitude(&rest.square()) }
+            } else if rest.negative {
+                rest.square().cmp_magnitude(&four_r)
+            } else {
+                Ordering::Less
+            }
+        });
+        if numerator_negative == q.negative { magnitude } else { -magnitude }
+    }
+
+    /// The leading 64 bits; `None` for zero.
+    fn leading(&self) -> Option<Leading> {
+        let top = self.len.checked_sub(1)?;
+        let shift = self.limbs[top].leading_zeros();
+        let below = |depth| if top < depth { 0 } else { self.limbs[top - depth] };
+        let wide = (u128::from(self.limbs[top]) << 64 | u128::from(below(1))) << shift
+            | (u128::from(below(2)) << shift) >> 64;
+        // the lowest live limb is not zero: with a third one, something is left after 64 bits
+        let sticky = low(wide) != 0 || top >= 2;
+        let exponent = 64 * (self.base + index(top)) - shift.cast_signed();
+        Some(Leading { bits: high(wide), next: low(wide), exponent, sticky })
+    }
+
+    /// The position one above the highest live limb, in limbs.
+    fn top(&self) -> i32 {
+        self.base + index(self.len)
+    }
+
+    fn live(&self) -> &[u64] {
+        &self.limbs[..self.len]
+    }
+
+    /// Restores the promise on the first and the last limb.
+    fn normal(mut self) -> Self {
+        while self.len > 0 && self.limbs[self.len - 1] == 0 {
+            self.len -= 1;
+        }
+        let zeros = self.live().iter().take_while(|&&limb| limb == 0).count();
+        if self.len == 0 {
+            return Self::ZERO;
+        }
+        if zeros > 0 {
+            self.limbs.copy_within(zeros..self.len, 0);
+            self.len -= zeros;
+            self.limbs[self.len..self.len + zeros].fill(0);
+            self.base += index(zeros);
+        }
+        self
+    }
+
+    fn cmp_magnitude(&self, other: &Self) -> Ordering {
+        if self.len == 0 || other.len == 0 {
+            return self.len.cmp(&other.len);
+        }
+        self.top().cmp(&other.top()).then_with(|| {
+            // same highest position: the first difference from the top decides, and a longer number is larger
+            let (mut a, mut b) = (self.live().iter().rev(), other.live().iter().rev());
+            loop {
+                match (a.next(), b.next()) {
+                    (Some(x), Some(y)) if x == y => {}
+                    (Some(x), Some(y)) => return x.cmp(y),
+                    (x, y) => return x.is_some().cmp(&y.is_some()),
+                }
+            }
+        })
+    }
+
+    /// `|self| + |other|` with the sign of `self`; both not zero.
+    fn add_magnitude(&self, other: &Self) -> Self {
+        let base = self.base.min(other.base);
+        let mut sum = Self {
+            negative: self.negative,
+            base,
+            len: span(base, self.top().max(other.top())),
+            ..Self::ZERO
+        };
+        let at = span(base, self.base);
+        sum.limbs[at..at + self.len].copy_from_slice(self.live());
+        let mut carry = false;
+        let at = span(base, other.base);
+        for (limb, &more) in sum.limbs[at..at + other.len].iter_mut().zip(other.live()) {
+            (*limb, carry) = limb.carrying_add(more, carry);
+        }
+        if carry {
+            for limb in &mut sum.limbs[at + other.len..sum.len] {
+                (*limb, carry) = limb.overflowing_add(1);
+                if !carry {
+                    break;
+                }
+            }
+        }
+        if carry {
+            sum.limbs[sum.len] = 1;
+            sum.len += 1;
+        }
+        sum.normal()
+    }
+
+    /// `|self| - |other|` with the sign of `self`; needs `|self| > |other| > 0`.
+    fn sub_magnitude(&self, other: &Self) -> Self {
+        let base = self.base.min(other.base);
+        let mut difference =
+            Self { negative: self.negative, base, len: span(base, self.top()), ..Self::ZERO };
+        let at = span(base, self.base);
+        difference.limbs[at..at + self.len].copy_from_slice(self.live());
+        let mut borrow = false;
+        let at = span(base, other.base);
+        for (limb, &less) in difference.limbs[at..at + other.len].iter_mut().zip(other.live()) {
+            (*limb, borrow) = limb.borrowing_sub(less, borrow);
+        }
+        if borrow {
+            for limb in &mut difference.limbs[at + other.len..difference.len] {
+                (*limb, borrow) = limb.overflowing_sub(1);
+                if !borrow {
+                    break;
+                }
+            }
+        }
+        difference.normal()
+    }
+}
+
+impl<const LIMBS: usize> Add for &Dyadic<LIMBS> {
+    type Output = Dyadic<LIMBS>;
+
+    fn add(self, other: Self) -> Dyadic<LIMBS> {
+        if self.len == 0 || other.len == 0 {
+            return if self.len == 0 { other.clone() } else { self.clone() };
+        }
+        if self.negative == other.negative {
+            return self.add_magnitude(other);
+        }
+        match self.cmp_magnitude(other) {
+            Ordering::Equal => Dyadic::ZERO,
+            Ordering::Greater => self.sub_magnitude(other),
+            Ordering::Less => other.sub_magnitude(self),
+        }
+    }
+}
+
+impl<const LIMBS: usize> Sub for &Dyadic<LIMBS> {
+    type Output = Dyadic<LIMBS>;
+
+    fn sub(self, other: Self) -> Dyadic<LIMBS> {
+        // a - b = -(b - a) = -(b + -a) needs one negation; -b + a would copy b as well
+        if self.len == 0 || other.len == 0 {
+            return if self.len == 0 { -other.clone() } else { self.clone() };
+        }
+        if self.negative != other.negative {
+            return self.add_magnitude(other);
+        }
+        match self.cmp_magnitude(other) {
+            Ordering::Equal => Dyadic::ZERO,
+            Ordering::Greater => self.sub_magnitude(other),
+            Ordering::Less => -other.sub_magnitude(self),
+        }
+    }
+}
+
+impl<const LIMBS: usize> Mul for &Dyadic<LIMBS> {
+    type Output = Dyadic<LIMBS>;
+
+    fn mul(self, other: Self) -> Dyadic<LIMBS> {
+        if self.len == 0 || other.len == 0 {
+            return Dyadic::ZERO;
+        }
+        let len = self.len + other.len - 1; // and one more if the last carry is not zero
+        let base = self.base + other.base;
+        let mut product = Dyadic { negative: self.negative != other.negative, base, len, ..Dyadic::ZERO };
+        let mut last_carry = 0;
+        for (i, &x) in self.live().iter().enumerate() {
+            let mut carry = 0;
+            for (limb, &y) in product.limbs[i..i + other.len].iter_mut().zip(other.live()) {
+                let wide = u128::from(x) * u128::from(y) + u128::from(*limb) + u128::from(carry);
+                (*limb, carry) = (low(wide), high(wide));
+            }
+            if i + 1 < self.len {
+                product.limbs[i + other.len] = carry;
+            } else {
+                last_carry = carry;
+            }
+        }
+        if last_carry != 0 {
+            product.limbs[len] = last_carry;
+            product.len += 1;
+        }
+        product.normal()
+    }
+}
+
+impl<const LIMBS: usize> Neg for Dyadic<LIMBS> {
+    type Output = Self;
+
+    fn neg(mut self) -> Self {
+        self.negative = self.len != 0 && !self.negative;
+        self
+    }
+}
+
+/// The same operators for values in place of references.
+macro_rules! by_value {
+    ($($Operator:ident $method:ident)*) => { $(
+        impl<const LIMBS: usize> $Operator for Dyadic<LIMBS> {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                (&self).$method(&other)
+            }
+        }
+        impl<const LIMBS: usize> $Operator<&Self> for Dyadic<LIMBS> {
+            type Output = Self;
+            fn $method(self, other: &Self) -> Self {
+                (&self).$method(other)
+            }
+        }
+        impl<const LIMBS: usize> $Operator<Dyadic<LIMBS>> for &Dyadic<LIMBS> {
+            type Output = Dyadic<LIMBS>;
+            fn $method(self, other: Dyadic<LIMBS>) -> Dyadic<LIMBS> {
+                self.$method(&other)
+            }
+        }
+    )* };
+}
+
+by_value!(Add add Sub sub Mul mul);
+
+impl<const LIMBS: usize> Ord for Dyadic<LIMBS> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.sign().cmp(&other.sign()).then_with(|| {
+            let magnitude = self.cmp_magnitude(other);
+            if self.negative { magnitude.reverse() } else { magnitude }
+        })
+    }
+}
+
+impl<const LIMBS: usize> PartialOrd for Dyadic<LIMBS> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<const LIMBS: usize> PartialEq for Dyadic<LIMBS> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<const LIMBS: usize> Eq for Dyadic<LIMBS> {}
+
+impl<const LIMBS: usize> core::fmt::Debug for Dyadic<LIMBS> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let sign = if self.negative { "-" } else { "" };
+        write!(f, "{sign}{:x?} * 2^{}", self.live(), 64 * self.base)
+    }
+}
+
+/// The leading 64 bits of a magnitude: it is `(bits + rest) 2^exponent` with `0 <= rest < 1`.
+#[derive(Clone, Copy)]
+struct Leading {
+    /// The highest bit is set.
+    bits: u64,
+    /// The 64 bits after these.
+    next: u64,
+    exponent: i32,
+    /// Whether `rest` is not zero.
+    sticky: bool,
+}
+
+impl Leading {
+    fn interval(self) -> Interval {
+        Interval { low: u128::from(self.bits), width: u128::from(self.sticky), exponent: self.exponent }
+    }
+
+    /// The square root, within one unit of 2^-63 relative.
+    fn sqrt(self) -> Interval {
+        // 127 or 128 bits, so that the exponent is even; the rest is below one unit of the radicand, hence of its root
+        let wide = u128::from(self.bits) << 64 | u128::from(self.next);
+        let odd = self.exponent & 1;
+        let radicand = wide >> odd;
+        Interval { low: radicand.isqrt(), width: 1, exponent: (self.exponent - 64 + odd) / 2 }
+    }
+}
+
+/// The numbers from `low 2^exponent` to `(low + width) 2^exponent`, with a small width.
+#[derive(Clone, Copy)]
+struct Interval {
+    low: u128,
+    width: u128,
+    exponent: i32,
+}
+
+impl Interval {
+    const ZERO: Self = Self { low: 0, width: 0, exponent: 0 };
+
+    /// The sum, with 63 or 64 bits, of two intervals of 64 bits.
+    fn plus(self, other: Self) -> Self {
+        let exponent = self.exponent.max(other.exponent) + 1;
+        let shifted = |x: Self| x.low.checked_shr((exponent - x.exponent).cast_unsigned()).unwrap_or(0);
+        // each term is at most one unit wide (of its own exponent, less than half a unit here) and cut by less than
+        // one unit to a multiple, so it ends at most one unit above its lower bound
+        Self { low: shifted(self) + shifted(other), width: 2, exponent }
+    }
+
+    /// The product of two intervals of at most 64 bits, cut to 64 bits.
+    fn times(self, other: Self) -> Self {
+        let lower = self.low * other.low;
+        let cut = 64 - lower.leading_zeros().cast_signed();
+        let cut = cut.max(0);
+        // (a + v) (b + w) - a b = a w + b v + v w
+        let width = self.low * other.width + other.low * self.width + self.width * other.width;
+        Self { low: lower >> cut, width: (width >> cut) + 2, exponent: self.exponent + other.exponent + cut }
+    }
+}
+
+/// Rounds both ends of a quotient of two positive intervals of 62 to 65 bits to doubles.
+fn enclose(numerator: Interval, denominator: Interval) -> (f64, f64) {
+    let exponent = numerator.exponent - denominator.exponent - 62;
+    let lower = (numerator.low << 62) / (denominator.low + denominator.width);
+    let upper = ((numerator.low + numerator.width) << 62).div_ceil(denominator.low);
+    (round(lower, exponent, false), round(upper, exponent, false))
+}
+
+/// Chooses between two equal or neighbouring doubles that enclose a positive value: `compare(2 m)` tells how the value
+/// compares with the midpoint `m` of the two.
+fn decide<const LIMBS: usize>(
+    lower: f64,
+    upper: f64,
+    compare: impl FnOnce(&Dyadic<LIMBS>) -> Ordering,
+) -> f64 {
+    if lower == upper {
+        return upper;
+    }
+    debug_assert!(lower.next_up() == upper, "{lower:e} {upper:e}");
+    // an infinite upper neighbour counts as 2^1024 here, which is where rounding puts it
+    match compare(&(Dyadic::from_f64(lower) + Dyadic::from_f64(upper))) {
+        Ordering::Less => lower,
+        Ordering::Greater => upper,
+        Ordering::Equal if lower.to_bits() & 1 == 0 => lower,
+        Ordering::Equal => upper,
+    }
+}
+
+/// Rounds the positive number `(bits + rest) 2^exponent` to nearest, ties to even; `sticky` tells whether the rest,
+/// which is below 1, is not zero.
+fn round(bits: u128, exponent: i32, sticky: bool) -> f64 {
+    if bits == 0 {
+        return 0.0; // only with a rest far below the smallest double, or zero itself
+    }
+    let length = 128 - bits.leading_zeros().cast_signed();
+    let highest = exponent + length - 1; // the weight of the leading bit
+    if highest > 1023 {
+        return f64::INFINITY;
+    }
+    // the weight of the last bit kept: 53 bits, or the last bit of a subnormal
+    let last = (highest - 52).max(-1074);
+    let drop = last - exponent;
+    if drop <= 0 {
+        // all bits fit: exact but for a rest, which callers only have with longer numbers
+        debug_assert!(!sticky);
+        return compose(low(bits << -drop), highest);
+    }
+    if drop > 128 {
+        return 0.0;
+    }
+    let drop = drop.cast_unsigned();
+    let kept = bits.checked_shr(drop).unwrap_or(0);
+    let dropped = bits - kept.checked_shl(drop).unwrap_or(0);
+    let half = 1 << (drop - 1);
+    let up = dropped > half || dropped == half && (sticky || kept & 1 == 1);
+    compose(low(kept) + u64::from(up), highest)
+}
+
+/// The double with the 53-bit significand `kept` (2^53 carries over) and leading bit of weight `2^highest`, or the
+/// subnormal `kept 2^-1074` if `highest` is below the normal range.
+fn compose(kept: u64, highest: i32) -> f64 {
+    let biased = u64::from((highest + 1022).max(0).cast_unsigned());
+    f64::from_bits((biased << 52) + kept)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is asked for")]
+fn low(wide: u128) -> u64 {
+    wide as u64
+}
+
+fn high(wide: u128) -> u64 {
+    low(wide >> 64)
+}
+
+/// A limb count as a signed position.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    reason = "at most LIMBS, a few hundred"
+)]
+fn index(limbs: usize) -> i32 {
+    limbs as i32
+}
+
+/// The number of limbs from position `from` up to `to`.
+fn span(from: i32, to: i32) -> usize {
+    to.abs_diff(from) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::{self, Exact, Rng, cases, exact};
+
+    /// Holds a cubic polynomial of any doubles, and its square.
+    type Number = Dyadic<208>;
+
+    fn value(x: &Number) -> Exact {
+        let limb = Exact::from(2).pow(64);
+        let integer = x.live().iter().rev().fold(Exact::ZERO, |sum, &digit| sum * &limb + Exact::from(digit));
+        let magnitude = integer * limb.pow(x.base as isize);
+        if x.negative { -magnitude } else { magnitude }
+    }
+
+    fn assert_normal(x: &Number) {
+        assert!(x.len == 0 || x.limbs[0] != 0 && x.limbs[x.len - 1] != 0, "{x:?}");
+        assert!(x.limbs[x.len..].iter().all(|&limb| limb == 0), "{x:?}");
+        assert!(x.len > 0 || !x.negative && x.base == 0, "{x:?}");
+    }
+
+    /// A sum of up to three products of up to three doubles, wide, narrow or cancelling.
+    fn polynomial(rng: &mut Rng) -> (Number, Exact) {
+        let (mut sum, mut truth) = (Number::ZERO, Exact::ZERO);
+        for _ in 0..rng.below(3) + 1 {
+            let (mut term, mut term_truth) = (Number::power_of_two(0), Exact::ONE);
+            for _ in 0..rng.below(3) + 1 {
+                let x = if rng.below(3) == 0 { rng.finite() } else { rng.with_exponent(-60..60) };
+                (term, term_truth) = (term * Number::from_f64(x), term_truth * exact(x));
+            }
+            if rng.below(2) == 0 {
+                (sum, truth) = (sum + term, truth + term_truth);
+            } else {
+                (sum, truth) = (sum - term, truth - term_truth);
+            }
+            assert_normal(&sum);
+        }
+        (sum, truth)
+    }
+
+    #[test]
+    fn arithmetic_is_exact() {
+        let mut rng = Rng::new(6);
+        for _ in 0..cases(100_000) / 5 {
+            let ((x, x_truth), (y, y_truth)) = (polynomial(&mut rng), polynomial(&mut rng));
+            assert_eq!(value(&x), x_truth);
+            assert_eq!(x.cmp(&y), x_truth.cmp(&y_truth));
+            assert_eq!(x.sign(), x_truth.cmp(&Exact::ZERO));
+            assert_eq!(&(&x + &y) - &y, x);
+            assert_eq!(-(&x - &y), &y - &x);
+            assert_eq!(value(&(&x - &y)), &x_truth - &y_truth);
+            let k = rng.integer(-300..300);
+            assert_eq!(x.scale(k).scale(-k), x);
+            assert_eq!(&x - &x, Number::ZERO);
+        }
+    }
+
+    #[test]
+    fn doubles_go_in_and_out_unchanged() {
+        let mut rng = Rng::new(7);
+        for _ in 0..cases(1_000_000) {
+            let x = rng.finite() + 0.0;
+            assert_eq!(Number::from_f64(x).to_f64().to_bits(), x.to_bits(), "{x:e}");
+            assert_eq!(value(&Number::from_f64(x)), exact(x), "{x:e}");
+        }
+        assert_eq!(Number::from_f64(-0.0).to_f64().to_bits(), 0);
+    }
+
+    #[test]
+    fn integers_round_correctly() {
+        let mut rng = Rng::new(8);
+        let mut ties = 0;
+        for _ in 0..cases(100_000) {
+            let (x, truth) = hard_to_round(&mut rng);
+            assert_eq!(x.to_f64().to_bits(), oracle::round(&truth).to_bits(), "{x:?}");
+            ties += usize::from(is_tie(&truth));
+        }
+        assert!(ties > 100, "{ties}");
+    }
+
+    /// A number at, or hardly off, a double or a midpoint of two, from end to end of the range and a little beyond.
+    fn hard_to_round(rng: &mut Rng) -> (Number, Exact) {
+        let range = [-1080..-1015, -1080..1024, 1000..1024][rng.below(3)].clone();
+        let x = rng.with_exponent(range);
+        let (mut number, mut truth) = (Number::from_f64(x), exact(x));
+        let ulp = x.abs().next_up() - x.abs();
+        if ulp.is_finite() && rng.below(4) > 0 {
+            (number, truth) = (number + Number::from_f64(ulp).scale(-1), truth + exact(ulp) / exact(2.0));
+        }
+        if rng.below(2) == 0 {
+            let shift = rng.integer(-1100..-30);
+            let dust = rng.with_exponent(-10..10);
+            number = number + Number::from_f64(dust).scale(shift) * Number::from_f64(ulp.min(1e300));
+            truth += exact(dust) * Exact::from(2).pow(shift as isize) * exact(ulp.min(1e300));
+        }
+        if rng.below(8) == 0 {
+            (number, truth) = (number.scale(60), truth * Exact::from(2).pow(60));
+        }
+        (number, truth)
+    }
+
+    fn is_tie(x: &Exact) -> bool {
+        let nearest = oracle::round(x);
+        let rest = x - if nearest.is_finite() { exact(nearest) } else { return false };
+        let abs = |x: Exact| if x < Exact::ZERO { -x } else { x };
+        let ulp = exact(nearest.abs().next_up().min(f64::MAX)) - exact(nearest.abs());
+        abs(rest) * exact(2.0) == ulp
+    }
+
+    #[test]
+    fn quotients_round_correctly() {
+        let mut rng = Rng::new(9);
+        let mut ties = 0;
+        for i in 0..cases(100_000) {
+            // a quotient that is hard by construction, its terms multiplied by something, or any
+            let ((n, n_truth), (d, d_truth)) = if i % 2 == 0 {
+                let ((x, x_truth), (y, y_truth)) = (hard_to_round(&mut rng), polynomial(&mut rng));
+                if y.sign() == Ordering::Equal {
+                    continue;
+                }
+                ((&x * &y, x_truth * &y_truth), (y, y_truth))
+            } else {
+                (polynomial(&mut rng), polynomial(&mut rng))
+            };
+            if d.sign() == Ordering::Equal {
+                assert!(Number::quotient(&n, &d).is_nan());
+                continue;
+            }
+            let truth = n_truth / d_truth;
+            ties += usize::from(is_tie(&truth));
+            assert_eq!(Number::quotient(&n, &d).to_bits(), oracle::round(&truth).to_bits(), "{n:?} / {d:?}");
+        }
+        assert!(ties > 100, "{ties}");
+    }
+
+    #[test]
+    fn root_forms_round_correctly() {
+        let mut rng = Rng::new(10);
+        let mut ties = 0;
+        for i in 0..cases(100_000) {
+            let double = |rng: &mut Rng| {
+                let x = if rng.below(4) == 0 { rng.finite() } else { rng.with_exponent(-60..60) };
+                (Number::from_f64(x), exact(x))
+            };
+            let (mut q, q_truth) = double(&mut rng);
+            if q.sign() == Ordering::Equal {
+                (q, _) = (Number::power_of_two(0), Exact::ONE);
+            }
+            let q_truth = if q_truth == Exact::ZERO { Exact::ONE } else { q_truth };
+            let minus = rng.below(2) == 0;
+            let ((p, p_truth), (r, r_truth)) = match i % 4 {
+                // a perfect square, with a result that is hard to round: p = x q -+ s, r = s^2
+                0 => {
+                    let ((x, x_truth), (s, s_truth)) = (hard_to_round(&mut rng), double(&mut rng));
+                    let (s, s_truth) = if s_truth < Exact::ZERO { (-s, -s_truth) } else { (s, s_truth) };
+                    let xq = (&x * &q, x_truth * &q_truth);
+                    let p = if minus { (&xq.0 + &s, xq.1 + &s_truth) } else { (&xq.0 - &s, xq.1 - &s_truth) };
+                    (p, (s.square(), s_truth.sqr()))
+                }
+                // p^2 and r nearly equal
+                1 => {
+                    let ((p, p_truth), (dust, dust_truth)) = (double(&mut rng), double(&mut rng));
+                    (
+                        (p.clone(), p_truth.clone()),
+                        (p.square() + dust.square() * dust, p_truth.sqr() + dust_truth.sqr() * dust_truth),
+                    )
+                }
+                2 => ((Number::ZERO, Exact::ZERO), double(&mut rng)),
+                _ => (double(&mut rng), double(&mut rng)),
+            };
+            let found = Number::root(&p, minus, &r, &q);
+            if r_truth < Exact::ZERO {
+                assert!(found.is_nan());
+                continue;
+            }
+            // sign of s (p + sigma sqrt r) / q - m, without the root
+            let sign = |m: &Exact| {
+                let rest = m * &q_truth - &p_truth; // sigma sqrt r against rest, if q > 0
+                let order = match (minus, rest.cmp(&Exact::ZERO)) {
+                    (false, Ordering::Less) => Ordering::Greater,
+                    (false, _) => r_truth.cmp(&rest.sqr()),
+                    (true, Ordering::Greater) => Ordering::Less,
+                    (true, _) => rest.sqr().cmp(&r_truth),
+                };
+                if q_truth < Exact::ZERO { order.reverse() } else { order }
+            };
+            let expected = match sign(&Exact::ZERO) {
+                Ordering::Equal => 0.0,
+                Ordering::Greater => oracle::round_by(|m| sign(&m)),
+                Ordering::Less => -oracle::round_by(|m| sign(&-m).reverse()),
+            };
+            assert_eq!(found.to_bits(), expected.to_bits(), "({p:?} {minus} sqrt {r:?}) / {q:?}");
+            if i % 4 == 0 {
+                ties += usize::from(is_tie(&(p_truth / &q_truth + oracle_root(&r_truth, minus) / q_truth)));
+            }
+        }
+        assert!(ties > 30, "{ties}");
+    }
+
+    /// The root of a perfect square of a double, with the sign.
+    fn oracle_root(square: &Exact, minus: bool) -> Exact {
+        if *square == Exact::ZERO {
+            return Exact::ZERO;
+        }
+        let root = exact(oracle::round_by(|m| square.cmp(&m.sqr())));
+        assert_eq!(root.sqr(), *square);
+        if minus { -root } else { root }
+    }
+}

@@ -1,0 +1,39 @@
+//! Exact arithmetic on doubles: the tools from which every kernel of the crate is made.
+//!
+//! A kernel that promises an exact verdict or a correctly rounded value works in stages, each one dearer and
+//! rarer than the one before:
+//!
+//! 1. a *filter*: plain doubles and an error bound known beforehand;
+//! 2. *double-double*: [`DoubleDouble`], about 106 bits, made of the error-free transformations [`two_sum`],
+//!    [`two_diff`] and [`two_prod`]; a value so computed is accepted when [`round_if_certain`] shows that its error
+//!    cannot change the rounding;
+//! 3. *integers*: [`Dyadic`], exact for every finite input, over- and underflow included; cold.
+//!
+//! Nothing here allocates, and every loop is bounded by the number of limbs.
+//!
+//! Functions that multiply take the constant parameter `FMA`: whether to use the fused multiply-add, which is one
+//! instruction where the processor has it and a slow library call elsewhere. The bits of the result do not depend on
+//! it. [`fma_dispatch!`](crate::fma_dispatch) compiles one body both ways and chooses at run time.
+//!
+//! `docs/numerics.md`, section 1, proves every bound stated here.
+//!
+//! ```
+//! use rt_math::exact::{Dyadic, two_prod, two_sum};
+//!
+//! assert_eq!(two_sum(1.0, 1e-20), (1.0, 1e-20));
+//! let (product, error) = two_prod::<false>(0.1, 0.1);
+//! type Integer = Dyadic<4>; // 256 bits hold any product of two doubles
+//! let exact = &Integer::from_f64(0.1) * &Integer::from_f64(0.1);
+//! assert_eq!(exact, Integer::from_f64(product) + Integer::from_f64(error));
+//! ```
+
+mod double_double;
+mod dyadic;
+mod error_free;
+mod fma;
+mod round;
+
+pub use double_double::DoubleDouble;
+pub use dyadic::Dyadic;
+pub use error_free::{fast_two_sum, two_diff, two_prod, two_sum};
+pub use round::round_if_certain;
