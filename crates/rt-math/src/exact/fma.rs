@@ -6,7 +6,7 @@
 /// on its hot path, so that it is compiled anew inside each caller. Cold parts are ordinary `#[cold] #[inline(never)]`
 /// functions, which exist once. `kernel` must give the same result for either value.
 ///
-/// - FMA compiled in (`-C target-feature=+fma`), or AArch64: a direct call of `kernel::<true>`.
+/// - FMA compiled in (`-C target-feature=+fma`), or 64-bit ARM: a direct call of `kernel::<true>`.
 /// - x86 otherwise: a call that cannot be inlined of `kernel::<true>`, compiled for FMA, or `kernel::<false>`. The
 ///   choice costs one relaxed load and a predictable branch, the call one to two nanoseconds: put the dispatch around
 ///   a whole kernel, not around its parts, and a cheap filter that decides most cases before it.
