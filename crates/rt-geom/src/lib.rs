@@ -5,6 +5,7 @@ mod inside;
 mod plane;
 mod ray;
 mod sphere;
+mod tree;
 mod triangle;
 
 pub use enclosing::{Enclosing, enclosing_sphere};
@@ -12,4 +13,5 @@ pub use inside::{Inside, inside_triangle};
 pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
 pub use sphere::{Side, Sphere};
+pub use tree::{HalvingTree, Hit, Shape, SphereTree};
 pub use triangle::{Triangle, Verdict};
