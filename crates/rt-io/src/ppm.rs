@@ -7,5 +7,7 @@
 mod read;
 mod write;
 
-pub use read::{Field, Limits, PpmError, read, read_bytes};
+pub use crate::Limits;
+pub(crate) use read::read_known;
+pub use read::{Field, PpmError, read, read_bytes};
 pub use write::{Encoding, write};

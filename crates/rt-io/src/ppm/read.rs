@@ -9,20 +9,8 @@
 use std::fmt;
 use std::io::{self, Read};
 
+use crate::Limits;
 use crate::pixmap::{Pixmap, Samples};
-
-/// What a reader refuses to go beyond.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// The largest `width * height`. The default is 2^28: 0.8 GB at 8 bits, 1.6 GB at 16.
-    pub max_pixels: u64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { max_pixels: 1 << 28 }
-    }
-}
 
 /// A number of the format, as error messages name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,11 +189,11 @@ pub fn read(reader: impl Read, limits: &Limits) -> Result<Pixmap, PpmError> {
 /// As [`read`]; a raster that cannot be whole is refused before anything is allocated for it.
 ///
 /// ```
-/// use rt_io::ppm;
-/// let pixmap = ppm::read_bytes(b"P2 # a grey pixel\n1 1 15 7", &ppm::Limits::default()).unwrap();
+/// use rt_io::{Limits, ppm};
+/// let pixmap = ppm::read_bytes(b"P2 # a grey pixel\n1 1 15 7", &Limits::default()).unwrap();
 /// assert_eq!(pixmap.pixel(0, 0), [7, 7, 7]);
 ///
-/// let error = ppm::read_bytes(b"P3 1 1 255 1 2 1.5", &ppm::Limits::default()).unwrap_err();
+/// let error = ppm::read_bytes(b"P3 1 1 255 1 2 1.5", &Limits::default()).unwrap_err();
 /// assert_eq!(error.to_string(), "byte 16: expected white space after a sample, found `.`");
 /// ```
 pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Pixmap, PpmError> {

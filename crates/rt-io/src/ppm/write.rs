@@ -52,8 +52,9 @@ fn write_pairs(samples: &[u16], out: &mut (impl Write + ?Sized)) -> io::Result<(
     Ok(())
 }
 
-/// Each number is followed by a space. A line ends with the row, or before that after as many whole pixels as netpbm
-/// puts on one: what fits in 79 bytes if a number took one byte less than `maxval` with its space does.
+/// Each number is followed by a space. A line ends after as many whole pixels as netpbm puts on one (what fits in 79 bytes
+/// if a number took one byte less than `maxval` with its space does), and again with the row, so that a row that fills
+/// its last line is followed by an empty one.
 fn write_plain<S: Copy + Into<u16>>(
     pixmap: &Pixmap,
     samples: &[S],
@@ -69,12 +70,15 @@ fn write_plain<S: Copy + Into<u16>>(
                 push_decimal(sample.into(), &mut text);
                 text.push(b' ');
             }
-            text.push(b'\n');
+            if piece.len() == line {
+                text.push(b'\n');
+            }
             if text.len() >= PIECE {
                 out.write_all(&text)?;
                 text.clear();
             }
         }
+        text.push(b'\n');
     }
     out.write_all(&text)
 }

@@ -1,0 +1,228 @@
+//! netpbm agrees: written files are its files byte for byte, and what it converts has the pixels that we decode.
+//!
+//! Each test says so and passes where netpbm is not installed.
+
+use std::io::Write;
+use std::process::{Command, Stdio};
+
+use proptest::prelude::*;
+use rt_io::ppm::{self, Encoding};
+use rt_io::{Limits, Pixmap, decode_image, png};
+
+/// Runs a tool of netpbm, `None` if it is not installed.
+fn netpbm(command: &str, input: &[u8]) -> Option<Vec<u8>> {
+    let mut words = command.split_whitespace();
+    let tool = words.next().unwrap();
+    let spawned = Command::new(tool)
+        .args(words)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut child = match spawned {
+        Ok(child) => child,
+        Err(error) => {
+            assert_eq!(error.kind(), std::io::ErrorKind::NotFound, "{command}");
+            eprintln!("SKIPPED: {tool} of netpbm is not installed");
+            return None;
+        }
+    };
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_vec();
+    // A tool that fails early closes its end; the status below tells.
+    let feed = std::thread::spawn(move || drop(stdin.write_all(&input)));
+    let output = child.wait_with_output().unwrap();
+    feed.join().unwrap();
+    assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    Some(output.stdout)
+}
+
+fn encode(pixmap: &Pixmap, encoding: Encoding) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    ppm::write(pixmap, encoding, &mut bytes).unwrap();
+    bytes
+}
+
+/// Any picture of at most 40 x 6 pixels, with every `maxval`.
+fn pixmaps() -> impl Strategy<Value = Pixmap> {
+    let maxval = prop_oneof![
+        prop::sample::select(vec![1, 9, 10, 99, 100, 255, 256, 999, 1000, 9999, 10000, 65535]),
+        1..=65535_u16
+    ];
+    (1..=40_usize, 1..=6_usize, maxval).prop_flat_map(|(width, height, maxval)| {
+        prop::collection::vec(0..=maxval, 3 * width * height)
+            .prop_map(move |samples| Pixmap::new(width, height, maxval, samples).unwrap())
+    })
+}
+
+/// A picture with soft gradients, flat parts and hard edges, in colour or grey.
+fn picture(width: usize, height: usize, maxval: u16, grey: bool) -> Pixmap {
+    let most = u64::from(maxval);
+    let samples = (0..width * height)
+        .flat_map(|index| {
+            let (x, y) = ((index % width) as u64, (index / width) as u64);
+            let red = x * most / (width as u64 - 1).max(1);
+            let green = y * most / (height as u64 - 1).max(1);
+            let blue = if (x / 5 + y / 3) % 2 == 0 { most } else { (x * y) % (most + 1) };
+            if grey { [green ^ red & most; 3].map(|v| v.min(most)) } else { [red, green, blue] }
+        })
+        .map(|v| u16::try_from(v).unwrap())
+        .collect();
+    Pixmap::new(width, height, maxval, samples).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn written_files_are_those_of_pnmtopnm(pixmap in pixmaps()) {
+        let raw = encode(&pixmap, Encoding::Raw);
+        let plain = encode(&pixmap, Encoding::Plain);
+        for input in [&raw, &plain] {
+            if let Some(found) = netpbm("pnmtopnm", input) {
+                prop_assert_eq!(&found, &raw);
+            }
+            if let Some(found) = netpbm("pnmtopnm -plain", input) {
+                prop_assert_eq!(String::from_utf8(found), String::from_utf8(plain.clone()));
+            }
+        }
+    }
+
+    #[test]
+    fn scaling_is_that_of_pamdepth(pixmap in pixmaps(), to in prop_oneof![Just(255), Just(65535), 1..=65535_u16]) {
+        let raw = encode(&pixmap, Encoding::Raw);
+        if let Some(expected) = netpbm(&format!("pamdepth {to}"), &raw) {
+            prop_assert_eq!(encode(&pixmap.scaled(to), Encoding::Raw), expected);
+        }
+    }
+
+    #[test]
+    fn written_png_files_are_read_back_by_pngtopnm(pixmap in pixmaps()) {
+        let mut bytes = Vec::new();
+        png::write(&pixmap, &mut bytes).unwrap();
+        if let Some(found) = netpbm("pngtopnm", &bytes) {
+            let found = ppm::read_bytes(&found, &Limits::default()).unwrap();
+            let maxval = if pixmap.maxval() <= 255 { 255 } else { 65535 };
+            prop_assert_eq!(found.scaled(maxval), pixmap.scaled(maxval));
+        }
+    }
+}
+
+/// Encodes by `encoder`, and compares what we decode with what `decoder` does.
+fn assert_same_pixels(pixmap: &Pixmap, grey: bool, encoder: &str, decoder: &str, most_apart: u16) {
+    let mut input = encode(pixmap, Encoding::Raw);
+    if grey {
+        let Some(pgm) = netpbm("ppmtopgm", &input) else { return };
+        input = pgm;
+    }
+    if encoder.contains("-g3") || encoder.contains("-g4") || encoder.contains("bits1") {
+        let Some(pbm) = netpbm("pamditherbw -threshold", &input).and_then(|pam| netpbm("pamtopnm", &pam))
+        else {
+            return;
+        };
+        input = pbm;
+    }
+    let encoder = encoder.trim_end_matches(" bits1");
+    let Some(file) = netpbm(encoder, &input) else { return };
+    let Some(expected) = netpbm(decoder, &file) else { return };
+    let ours = decode_image(&file, &Limits::default()).unwrap_or_else(|error| panic!("{encoder}: {error:?}"));
+    let expected = match &expected[..2] {
+        b"P4" => netpbm("pamdepth 255", &expected).unwrap(),
+        _ => expected,
+    };
+    let expected = ppm::read_bytes(&expected, &Limits::default()).unwrap();
+    let (maxval, size) = (ours.pixmap.maxval(), (ours.pixmap.width(), ours.pixmap.height()));
+    assert_eq!(size, (expected.width(), expected.height()), "{encoder}");
+    let apart = ours.pixmap.to_samples().into_iter().zip(expected.scaled(maxval).to_samples());
+    let apart = apart.map(|(ours, theirs)| ours.abs_diff(theirs)).max().unwrap();
+    assert!(apart <= most_apart, "{encoder}: samples differ by {apart} of {maxval}");
+}
+
+#[test]
+fn png_has_the_pixels_of_pngtopnm() {
+    for maxval in [1, 3, 15, 255, 65535] {
+        for grey in [false, true] {
+            for options in ["", "-interlace", "-force", "-compression=0", "-transparent=black"] {
+                assert_same_pixels(
+                    &picture(37, 23, maxval, grey),
+                    grey,
+                    &format!("pnmtopng {options}"),
+                    "pngtopnm",
+                    0,
+                );
+            }
+        }
+    }
+    // Few colours: a palette, of one to eight bits.
+    for colors in [2, 4, 16, 200] {
+        let all = picture(colors, 1, 255, false);
+        let samples = (0..40 * 9).flat_map(|index| all.pixel(index * 7 % colors, 0)).collect();
+        assert_same_pixels(&Pixmap::new(40, 9, 255, samples).unwrap(), false, "pnmtopng", "pngtopnm", 0);
+    }
+}
+
+#[test]
+fn tiff_has_the_pixels_of_tifftopnm() {
+    for maxval in [255, 65535] {
+        for grey in [false, true] {
+            for options in [
+                "-none -truecolor",
+                "-lzw -truecolor",
+                "-flate -truecolor",
+                "-adobeflate -truecolor",
+                "-packbits -truecolor",
+                "-lzw -predictor=2 -truecolor",
+                "-lzw -rowsperstrip=5 -truecolor",
+                "-minisblack",
+                "-miniswhite",
+            ] {
+                if options.starts_with("-minis") && !grey {
+                    continue;
+                }
+                let options = if grey { options.trim_end_matches(" -truecolor") } else { options };
+                assert_same_pixels(
+                    &picture(37, 23, maxval, grey),
+                    grey,
+                    &format!("pamtotiff {options}"),
+                    // Its default goes through 8 bits.
+                    "tifftopnm -byrow",
+                    0,
+                );
+            }
+        }
+    }
+    for options in ["-none", "-g4", "-lzw", "-packbits", "-none -miniswhite", "-none -minisblack"] {
+        assert_same_pixels(
+            &picture(37, 23, 255, true),
+            true,
+            &format!("pamtotiff {options} bits1"),
+            "tifftopnm",
+            0,
+        );
+    }
+}
+
+#[test]
+fn jpeg_is_within_4_of_libjpeg() {
+    for grey in [false, true] {
+        for options in [
+            "",
+            "-progressive",
+            "-optimize",
+            "-quality=30",
+            "-quality=100",
+            "-restart=2",
+            "-sample=2x1,1x1,1x1",
+            "-sample=1x1,1x1,1x1",
+        ] {
+            let options = if grey && options.starts_with("-sample") { "" } else { options };
+            assert_same_pixels(
+                &picture(61, 43, 255, grey),
+                grey,
+                &format!("pnmtojpeg {options}"),
+                "jpegtopnm",
+                4,
+            );
+        }
+    }
+}
