@@ -1,8 +1,11 @@
 //! The Moore-Penrose pseudo-inverse of a 3 x 3 matrix.
 //!
-//! One-sided Jacobi (Hestenes): plane rotations from the right make the columns of `A V` orthogonal, `V` being the
-//! product of the rotations. With `g_k` the columns of `A V` and `v_k` those of `V`, the singular values are `|g_k|`
-//! and `A+ = sum over k of v_k g_k^T / |g_k|^2`, taken over the singular values that count as not zero.
+//! Nearly every matrix is well scaled and regular, and then [`regular`] finds the correctly rounded inverse in
+//! double-double. Whatever that cannot decide goes to [`integers`], which are exact. [`truncated`] is another function:
+//! singular values below a tolerance are taken as zero.
+
+mod integers;
+mod regular;
 
 use glam::{DMat3, DVec3};
 
@@ -17,7 +20,15 @@ pub struct PseudoInverse {
 
 /// Returns the Moore-Penrose pseudo-inverse of `m` and the rank of `m`.
 ///
-/// A matrix with an infinite or NaN entry has none: every entry of the answer is NaN and the rank is 0.
+/// The rank is exact and every entry is correctly rounded (to nearest, ties to even), for all finite matrices: an entry
+/// beyond the range of doubles is infinite, one that underflows is a zero with the sign of the exact value, and one that
+/// is exactly zero is +0.0. For rank 3 this is the inverse. A matrix with an infinite or NaN entry has no pseudo-inverse:
+/// every entry of the answer is NaN and the rank is 0.
+///
+/// The pseudo-inverse jumps where the rank drops: if the entries carry errors, so that a matrix meant to be singular is
+/// not, [`pseudo_inverse_with_tolerance`] is the function to use.
+///
+/// Source: R. Penrose, "A generalized inverse for matrices", 1955, for the definition.
 ///
 /// ```
 /// use glam::{DMat3, DVec3};
@@ -30,7 +41,13 @@ pub struct PseudoInverse {
 /// assert_eq!(answer.matrix, DMat3::from_diagonal(DVec3::new(0.0, 0.25, 0.0)));
 /// ```
 pub fn pseudo_inverse(m: DMat3) -> PseudoInverse {
-    pseudo_inverse_with_tolerance(m, 3.0 * f64::EPSILON)
+    if let Some(inverse) = regular::inverse(&m) {
+        return PseudoInverse { matrix: inverse, rank: 3 };
+    }
+    if !m.is_finite() {
+        return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
+    }
+    integers::pseudo_inverse(&m)
 }
 
 /// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.

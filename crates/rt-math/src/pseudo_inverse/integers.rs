@@ -1,0 +1,73 @@
+//! The pseudo-inverse in exact integers: every finite matrix, whatever its exponents and its rank.
+//!
+//! With `a_k` the columns of the matrix and `c_k` those of the matrix of its cofactors (`c_0 = a_1 x a_2`, ...), the row
+//! `k` of the pseudo-inverse is
+//!
+//! - rank 3: `c_k / det`, the inverse;
+//! - rank 2: `b_k / sum of c^2`, where `b_0 = c_1 x a_2 - c_2 x a_1`, ... (the adjugate, made linear in `a` and in `c`);
+//! - rank 1: `a_k / sum of a^2`;
+//! - rank 0: zero.
+//!
+//! All are quotients of polynomials of the entries, so each is rounded once. `docs/numerics.md`, section 3, proves the
+//! formula for rank 2 and the sizes.
+
+use core::cmp::Ordering;
+
+use glam::{DMat3, DVec3};
+
+use super::PseudoInverse;
+use crate::exact::Dyadic;
+
+/// The exact rank and the correctly rounded pseudo-inverse of a finite matrix.
+#[cold]
+#[inline(never)]
+pub(super) fn pseudo_inverse(m: &DMat3) -> PseudoInverse {
+    // Degree 4 in entries of w bits takes (4 w + 6) / 64 + 2 limbs and two more for the rounding: w = 206 fits in 16
+    // limbs, and the 2098 bits from one end of the doubles to the other fit in 136.
+    const NARROW: u64 = 206 - 53;
+    let exponents = m.to_cols_array().map(|x| (x.to_bits() >> 52 & 0x7ff).max(1));
+    let used = || exponents.iter().zip(m.to_cols_array()).filter(|(_, x)| *x != 0.0).map(|(e, _)| *e);
+    if used().max().unwrap_or(0) - used().min().unwrap_or(0) <= NARROW {
+        limbs::<16>(m)
+    } else {
+        limbs::<136>(m)
+    }
+}
+
+type Vector<const LIMBS: usize> = [Dyadic<LIMBS>; 3];
+
+fn limbs<const LIMBS: usize>(m: &DMat3) -> PseudoInverse {
+    let a = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(Dyadic::<LIMBS>::from_f64));
+    let c = [cross(&a[1], &a[2]), cross(&a[2], &a[0]), cross(&a[0], &a[1])];
+    let determinant = dot(&a[0], &c[0]);
+    if determinant.sign() != Ordering::Equal {
+        return PseudoInverse { matrix: divided(&c, &determinant), rank: 3 };
+    }
+    let minors = dot(&c[0], &c[0]) + dot(&c[1], &c[1]) + dot(&c[2], &c[2]);
+    if minors.sign() != Ordering::Equal {
+        let b = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+            let (first, second) = (cross(&c[i], &a[j]), cross(&c[j], &a[i]));
+            [0, 1, 2].map(|k| &first[k] - &second[k])
+        });
+        return PseudoInverse { matrix: divided(&b, &minors), rank: 2 };
+    }
+    let squares = dot(&a[0], &a[0]) + dot(&a[1], &a[1]) + dot(&a[2], &a[2]);
+    if squares.sign() != Ordering::Equal {
+        return PseudoInverse { matrix: divided(&a, &squares), rank: 1 };
+    }
+    PseudoInverse { matrix: DMat3::ZERO, rank: 0 }
+}
+
+fn cross<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Vector<LIMBS> {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
+}
+
+fn dot<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Dyadic<LIMBS> {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+/// The matrix of the given rows over `denominator`, each entry correctly rounded; an exact zero is +0.0.
+fn divided<const LIMBS: usize>(rows: &[Vector<LIMBS>; 3], denominator: &Dyadic<LIMBS>) -> DMat3 {
+    let row = |k: usize| DVec3::from_array([0, 1, 2].map(|j| Dyadic::quotient(&rows[k][j], denominator)));
+    DMat3::from_cols(row(0), row(1), row(2)).transpose()
+}

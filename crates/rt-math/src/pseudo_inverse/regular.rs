@@ -1,0 +1,94 @@
+//! The inverse of a well-scaled regular matrix in double-double, vectorised by the compiler: the fast path.
+//!
+//! Cofactors and determinant are kept as unevaluated sums of two doubles with running error bounds; the rounding test
+//! decides each entry. Symbols and the proof of every constant: `docs/numerics.md`, section 3.
+
+use glam::DMat3;
+
+use crate::exact::{two_diff, two_prod, two_sum};
+use crate::fma_dispatch;
+
+/// Half a unit in the last place of 1, called u in the proofs.
+const U: f64 = f64::EPSILON / 2.0;
+
+/// Where the series for the reciprocal is bounded, and the determinant is proved not to be zero.
+const TAU_LIMIT: f64 = 1.0 / 8192.0;
+const ETA_LIMIT: f64 = 1.0 / 8.0;
+
+/// Magnitudes of entries, besides zero, for which no product, error term or quotient can over- or underflow.
+const SMALLEST: f64 = 1.0 / LARGEST;
+const LARGEST: f64 = f64::from_bits((1023 + 100) << 52); // 2^100
+
+fma_dispatch! {
+    /// The correctly rounded inverse, if double-double is enough to prove that the matrix is regular and to round
+    /// every entry, and all entries are zero or within 2^±100.
+    pub(super) fn inverse(m: &DMat3) -> Option<DMat3> = inverse_kernel;
+}
+
+#[inline(always)]
+pub(super) fn inverse_kernel<const FMA: bool>(m: &DMat3) -> Option<DMat3> {
+    let m = m.to_cols_array();
+    if !m.iter().fold(true, |all, &x| all & ((x == 0.0) | ((x.abs() >= SMALLEST) & (x.abs() <= LARGEST)))) {
+        return None;
+    }
+
+    // Entries of the adjugate, column by column as in the answer: h + l, within u b.
+    let (mut h, mut l, mut b) = ([0.0; 9], [0.0; 9], [0.0; 9]);
+    for column in 0..3 {
+        for row in 0..3 {
+            let entry = |i: usize, j: usize| m[3 * ((row + j) % 3) + (column + i) % 3];
+            let (first, first_error) = two_prod::<FMA>(entry(1, 1), entry(2, 2));
+            let (second, second_error) = two_prod::<FMA>(entry(2, 1), entry(1, 2));
+            let (high, high_error) = two_diff(first, second);
+            let errors = first_error - second_error;
+            let low = high_error + errors;
+            let k = 3 * column + row;
+            (h[k], l[k], b[k]) = (high, low, errors.abs() + low.abs());
+        }
+    }
+
+    // The determinant by the first row: s + low, within `bound`.
+    let a = [m[0], m[3], m[6]];
+    let [(p0, w0), (p1, w1), (p2, w2)] = [0, 1, 2].map(|k| two_prod::<FMA>(a[k], h[k]));
+    let v = [a[0] * l[0], a[1] * l[1], a[2] * l[2]];
+    let x = [w0 + v[0], w1 + v[1], w2 + v[2]];
+    let (s, first_error) = two_sum(p0, p1);
+    let (s, second_error) = two_sum(s, p2);
+    let y = [x[0] + x[1], x[0] + x[1] + x[2], first_error + second_error];
+    let low = y[1] + y[2];
+    let sum = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
+    let bound =
+        1.125 * U * (sum([a[0] * b[0], a[1] * b[1], a[2] * b[2]]) + sum(v) + sum(x) + sum(y) + low.abs());
+
+    // Its reciprocal: 1 / determinant = r (1 + tau + tau^2), within a relative error below `eta`.
+    let r = 1.0 / s;
+    let (product, product_error) = two_prod::<FMA>(r, s);
+    let tau = ((1.0 - product) - product_error) - low * r;
+    let (t, eta_0) = (tau.abs(), bound * r.abs());
+    if !((t < TAU_LIMIT) & (eta_0 < ETA_LIMIT)) {
+        return None;
+    }
+    let r_low = r * (tau + tau * tau);
+    let r_sum = r + r_low;
+    let eta = 2.0 * eta_0 + 16.0 * (U * U + t * (U + t * t));
+
+    // The quotients, each with its rounding test.
+    let (h_weight, b_weight) = (r.abs() * eta, r.abs() * (eta + 8.0 * U));
+    let mut inverse = [0.0; 9];
+    let mut certain = true;
+    for k in 0..9 {
+        let (quotient, error) = two_prod::<FMA>(h[k], r);
+        let correction = error + fused::<FMA>(h[k], r_low, l[k] * r_sum);
+        let bound = fused::<FMA>(h_weight, h[k].abs(), b_weight * b[k]);
+        let (lower, upper) = (quotient + (correction - bound), quotient + (correction + bound));
+        certain &= lower == upper;
+        inverse[k] = upper + 0.0; // an exact zero is +0.0
+    }
+    certain.then(|| DMat3::from_cols_array(&inverse))
+}
+
+/// `a b + c`, rounded once or twice: for terms whose bound allows either.
+#[inline(always)]
+fn fused<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FMA { a.mul_add(b, c) } else { a * b + c }
+}

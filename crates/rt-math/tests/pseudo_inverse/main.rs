@@ -1,0 +1,72 @@
+//! The rank is exact and every entry of the pseudo-inverse is correctly rounded, for every finite matrix.
+//!
+//! 10^4 matrices of each class; `RT_LONG=1 cargo test --release -p rt-math --test pseudo_inverse` runs 10^6 of each.
+
+mod matrices;
+mod oracle;
+
+use glam::DMat3;
+use matrices::{CLASSES, Random};
+use rt_math::{PseudoInverse, pseudo_inverse};
+
+/// Matrices per class: 10^4, or 10^6 with `RT_LONG` in the environment.
+fn cases() -> usize {
+    if std::env::var_os("RT_LONG").is_some() { 1_000_000 } else { 10_000 }
+}
+
+fn check(name: &str, m: &DMat3) {
+    let exact = oracle::pseudo_inverse(m);
+    let PseudoInverse { matrix, rank } = pseudo_inverse(*m);
+    assert_eq!(rank, exact.rank, "{name}: rank of {:?}", m.to_cols_array());
+    for i in 0..3 {
+        for j in 0..3 {
+            let (found, expected) = (matrix.col(j)[i], exact.rounded(i, j));
+            assert!(
+                found.to_bits() == expected.to_bits(),
+                "{name}: entry {i} {j} is {found:e}, not {expected:e}, for {:?}",
+                m.to_cols_array()
+            );
+        }
+    }
+}
+
+/// Runs `check` on `cases()` matrices of every class, the classes shared out over the processors.
+fn for_every_class(cases: usize, check: impl Fn(&str, &DMat3) + Sync) {
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some((name, class)) =
+                    CLASSES.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
+                {
+                    let mut random = Random(name.len() as u64);
+                    for _ in 0..cases {
+                        let m = class(&mut random);
+                        assert!(m.is_finite(), "{name} made {m}");
+                        check(name, &m);
+                    }
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn rank_is_exact_and_every_entry_correctly_rounded() {
+    for_every_class(cases(), check);
+}
+
+#[test]
+fn oracle_meets_the_penrose_conditions_exactly() {
+    for_every_class(cases(), |_, m| oracle::pseudo_inverse(m).assert_penrose(m));
+}
+
+#[test]
+fn answer_meets_the_penrose_conditions_within_its_rounding() {
+    for_every_class(cases() / 10, |_, m| {
+        let answer = pseudo_inverse(*m).matrix;
+        if answer.is_finite() {
+            oracle::assert_penrose_within_rounding(m, &answer);
+        }
+    });
+}
