@@ -15,10 +15,14 @@
 //! assert_eq!(shaded.to_array().map(|c| color::to_sample(c, 255)), [255, 128, 0]);
 //! ```
 
+mod arctangent;
 pub mod color;
+mod double_word;
 mod mapping;
 mod phong;
 mod power;
+#[cfg(test)]
+mod reference;
 mod texture;
 
 pub use mapping::{sphere_uv, texture_uv};
