@@ -1,1 +1,28 @@
 //! Draws the six figures of the report, and scenes of your own.
+//!
+//! A picture is made in one pass: [`scene_file`] reads a checked [`scene`], [`render`] sends the [`camera`]'s rays
+//! through a tree of the objects and shades what they hit, and [`output`] saves the pixels. [`cli`] is the program.
+//!
+//! ```
+//! use figures::camera::Size;
+//! use figures::figure::Figure;
+//! use figures::render::Renderer;
+//!
+//! let scene = Figure::numbered(1).unwrap().scene()?;
+//! let view = scene.view(Size { width: 64, height: 48, samples: 1 }).unwrap();
+//! let picture = Renderer::new(scene).rows(&view, 0..48, 255, &|_rows| ());
+//! assert_eq!(picture.rays, 64 * 48);
+//! assert_eq!(picture.samples[..3], [0, 0, 0]); // the corner is black
+//! # Ok::<(), figures::scene_file::SceneError>(())
+//! ```
+
+pub mod camera;
+pub mod cli;
+pub mod convert;
+pub mod draw;
+pub mod figure;
+pub mod output;
+pub mod render;
+pub mod scene;
+pub mod scene_file;
+mod texture_file;

@@ -1,2 +1,7 @@
-//! The program.
-fn main() {}
+//! The program; [`figures::cli`] is all of it.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    figures::cli::main()
+}

@@ -1,0 +1,276 @@
+//! The command line: arguments become a plain struct, then the work begins.
+//!
+//! stdout carries only what was asked for; progress, notes and errors go to stderr. Exit code 0: done, 1: could not,
+//! 2: wrong usage.
+
+use std::error::Error;
+use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::figure::{FIGURES, Figure};
+use crate::output::Format;
+use crate::{convert, draw};
+
+/// The largest number of pixels in a picture: 1.5 GiB of samples.
+const MAX_PIXELS: u64 = 1 << 28;
+/// The largest width and height, so that positions in the grid of samples fit 32 bits.
+const MAX_SIDE: u32 = 1 << 20;
+
+#[derive(Parser)]
+#[command(
+    name = "figures",
+    version,
+    about = "Draws the six figures of the report, and scenes of your own",
+    after_help = "Without an argument, asks for the number of the figure.",
+    args_conflicts_with_subcommands = true,
+    disable_help_subcommand = true
+)]
+struct Arguments {
+    /// The figure to draw: a number from 1 to 6, or `all`
+    figure: Option<Which>,
+    #[command(flatten)]
+    options: DrawOptions,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List the six figures
+    List,
+    /// Draw a scene file
+    Render {
+        /// The scene, in TOML
+        scene: PathBuf,
+        #[command(flatten)]
+        options: DrawOptions,
+    },
+    /// Convert an image (PPM, PNG, JPEG, TIFF) to PPM
+    Convert {
+        /// The image to read
+        input: PathBuf,
+        /// The PPM to write, or `-` for stdout
+        output: PathBuf,
+        /// The format to write, if not by the ending of OUTPUT
+        #[arg(long)]
+        format: Option<Format>,
+        /// Bits per sample, if not those of INPUT
+        #[arg(long)]
+        depth: Option<Depth>,
+        /// Write no warnings
+        #[arg(long)]
+        quiet: bool,
+    },
+    /// Count the sphere tests that the report's tree saves in a scene
+    Tests {
+        /// A figure's number or a scene file
+        scene: PathBuf,
+        /// Columns and rows of the picture
+        #[arg(long, value_name = "WxH", default_value = "1024x768")]
+        size: PictureSize,
+    },
+}
+
+/// How a picture is drawn and where it goes.
+#[derive(Args, Clone, Debug)]
+pub struct DrawOptions {
+    /// Where to: a file, a folder, or `-` for stdout [default: out/]
+    #[arg(short, long, value_name = "FILE|DIR|-")]
+    pub out: Option<PathBuf>,
+    /// Columns and rows of the picture
+    #[arg(long, value_name = "WxH", default_value = "1024x768")]
+    pub size: PictureSize,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Take N x N samples in each pixel
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub samples: u32,
+    /// The format to write [default: by the ending of FILE, else ppm]
+    #[arg(long)]
+    pub format: Option<Format>,
+    /// Bits per sample
+    #[arg(long, default_value = "8")]
+    pub depth: Depth,
+    /// Write no progress and no notes
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write size, rays, hits, seconds and memory to stdout as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Columns and rows of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSize {
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+}
+
+impl FromStr for PictureSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (width, height) =
+            text.split_once('x').ok_or("expected columns x rows, such as 640x480".to_owned())?;
+        let side = |digits: &str| match digits.parse::<u32>() {
+            Ok(side @ 1..=MAX_SIDE) => Ok(side),
+            _ => Err(format!("expected a whole number from 1 to {MAX_SIDE}, found {digits:?}")),
+        };
+        let (width, height) = (side(width)?, side(height)?);
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(format!("expected at most {MAX_PIXELS} pixels"));
+        }
+        Ok(Self { width, height })
+    }
+}
+
+/// Bits per sample of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Depth {
+    /// 8 bits, samples from 0 to 255.
+    #[value(name = "8")]
+    Eight,
+    /// 16 bits, samples from 0 to 65535.
+    #[value(name = "16")]
+    Sixteen,
+}
+
+impl Depth {
+    /// The largest sample.
+    pub fn maxval(self) -> u16 {
+        match self {
+            Self::Eight => 255,
+            Self::Sixteen => 65535,
+        }
+    }
+}
+
+/// One figure or all of them.
+#[derive(Clone, Copy)]
+enum Which {
+    One(&'static Figure),
+    All,
+}
+
+impl FromStr for Which {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let figure = text.parse().ok().and_then(Figure::numbered);
+        match (text, figure) {
+            ("all", _) => Ok(Self::All),
+            (_, Some(figure)) => Ok(Self::One(figure)),
+            _ => {
+                Err("expected the number of a figure, 1 to 6, or \"all\", or a command; see --help"
+                    .to_owned())
+            }
+        }
+    }
+}
+
+/// Why the program ends without having done its work.
+#[derive(Debug)]
+pub enum Failure {
+    /// It was asked for something that makes no sense.
+    Usage(String),
+    /// Something went wrong; the causes are told one after the other.
+    Failed(Box<dyn Error>),
+    /// Whoever reads stdout has had enough.
+    PipeClosed,
+}
+
+impl<E: Error + 'static> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Failed(Box::new(error))
+    }
+}
+
+/// Runs the program with the arguments it was started with.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(arguments) {
+        Ok(()) | Err(Failure::PipeClosed) => ExitCode::SUCCESS,
+        Err(Failure::Usage(message)) => {
+            complain(&message);
+            ExitCode::from(2)
+        }
+        Err(Failure::Failed(error)) => {
+            let mut message = error.to_string();
+            let mut cause = error.source();
+            while let Some(error) = cause {
+                // A wrapper whose text is its cause's would only repeat it.
+                let text = error.to_string();
+                if !message.ends_with(&text) {
+                    message = format!("{message}: {text}");
+                }
+                cause = error.source();
+            }
+            complain(&message);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn complain(message: &str) {
+    // Nobody is left to be told when stderr itself is gone.
+    let _ = writeln!(io::stderr(), "error: {message}");
+}
+
+fn run(arguments: Arguments) -> Result<(), Failure> {
+    match arguments.command {
+        None => {
+            let which = arguments.figure.map_or_else(ask, Ok)?;
+            match which {
+                Which::One(figure) => draw::figures(&[*figure], false, &arguments.options),
+                Which::All => draw::figures(&FIGURES, true, &arguments.options),
+            }
+        }
+        Some(Command::List) => {
+            let lines = FIGURES.iter().map(|figure| format!("{}  {}\n", figure.number, figure.title));
+            to_stdout(lines.collect::<String>().as_bytes())
+        }
+        Some(Command::Render { scene, options }) => draw::scene_file(&scene, &options),
+        Some(Command::Convert { input, output, format, depth, quiet }) => {
+            convert::convert(&input, &output, format, depth.map(Depth::maxval), quiet)
+        }
+        Some(Command::Tests { scene, size }) => draw::count_tests(&scene, size),
+    }
+}
+
+/// Asks for the number of the figure, as the original program did.
+fn ask() -> Result<Which, Failure> {
+    let stdin = io::stdin();
+    if stdin.is_terminal() {
+        let _ = write!(io::stderr(), "Which figure, 1 to 6? ");
+    }
+    let mut answer = String::new();
+    // No answer is longer than this; an endless one is not read to its end.
+    let read = stdin.lock().take(64).read_line(&mut answer);
+    let answer = answer.trim();
+    match answer.parse() {
+        Ok(which) if read.is_ok() => Ok(which),
+        _ => Err(Failure::Usage(format!(
+            "expected the number of a figure, 1 to 6, or \"all\", found {answer:?}"
+        ))),
+    }
+}
+
+/// Writes to stdout what was asked for.
+///
+/// # Errors
+/// [`Failure::PipeClosed`] if nobody reads it any more, else the failed write.
+pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::PipeClosed),
+        Err(error) => Err(Failure::Failed(format!("cannot write to stdout: {error}").into())),
+        Ok(()) => Ok(()),
+    }
+}

@@ -1,0 +1,37 @@
+//! Converts an image to PPM: takes the place of the report's script.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use rt_io::{Limits, read_image};
+
+use crate::cli::Failure;
+use crate::output::{Format, Target};
+
+/// Reads the image `input`, whatever its format, and writes it to `output`.
+///
+/// Samples keep their depth unless `maxval` says otherwise: 8 bits, or 16 where the image has more. Grey becomes RGB.
+/// Alpha is dropped, with a warning if a sample is not opaque.
+///
+/// # Errors
+/// What is wrong with the image, or why the result could not be written.
+pub fn convert(
+    input: &Path,
+    output: &Path,
+    format: Option<Format>,
+    maxval: Option<u16>,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let image = read_image(input, &Limits::default())?;
+    let pixmap = match maxval {
+        Some(maxval) => image.pixmap.scaled(maxval),
+        None => image.pixmap,
+    };
+    let target = if output == Path::new("-") { Target::Stdout } else { Target::File(output.to_owned()) };
+    target.write(&pixmap, target.format(format))?;
+    if image.transparent && !quiet {
+        // A warning that nobody can read is no reason to fail.
+        let _ = writeln!(io::stderr(), "warning: {}: transparency was dropped", input.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,213 @@
+//! Draws scenes into files: loads, builds, traces, writes, and tells what that took.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use rt_geom::HalvingTree;
+use rt_io::Pixmap;
+use serde::Serialize;
+
+use crate::camera::{Size, View};
+use crate::cli::{DrawOptions, Failure, PictureSize, to_stdout};
+use crate::figure::Figure;
+use crate::output::Target;
+use crate::render::{self, AHEAD, Renderer};
+use crate::scene::Scene;
+use crate::scene_file::{self, SceneError};
+
+/// Work that ends sooner than this shows no progress.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What `--json` tells about one picture.
+#[derive(Serialize)]
+struct Account {
+    picture: String,
+    width: u32,
+    height: u32,
+    samples: u32,
+    spheres: usize,
+    triangles: usize,
+    rays: u64,
+    hits: u64,
+    seconds: Seconds,
+    /// The largest amount of memory that the process has held so far; null where the system does not tell.
+    peak_memory_bytes: Option<u64>,
+}
+
+#[derive(Serialize)]
+struct Seconds {
+    load: f64,
+    build: f64,
+    trace: f64,
+    write: f64,
+}
+
+/// Draws figures; with `folder`, `--out` is a folder.
+///
+/// # Errors
+/// Wrong usage, or the first thing that could not be done.
+pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Result<(), Failure> {
+    if folder && options.out.as_deref() == Some(Path::new("-")) {
+        return Err(Failure::Usage("six pictures need a folder: --out DIR".to_owned()));
+    }
+    let pool = pool(options)?;
+    figures.iter().try_for_each(|figure| draw(&figure.name(), || figure.scene(), folder, options, &pool))
+}
+
+/// Draws the scene file at `path`.
+///
+/// # Errors
+/// As [`figures`].
+pub fn scene_file(path: &Path, options: &DrawOptions) -> Result<(), Failure> {
+    let name =
+        path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    draw(&name, || scene_file::load(path), false, options, &pool(options)?)
+}
+
+fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
+    if options.json && options.out.as_deref() == Some(Path::new("-")) {
+        return Err(Failure::Usage("--json and --out - both write to stdout; choose one".to_owned()));
+    }
+    // 0: one thread for each core.
+    Ok(ThreadPoolBuilder::new().num_threads(options.threads.map_or(0, usize::from)).build()?)
+}
+
+fn draw(
+    name: &str,
+    load: impl FnOnce() -> Result<Scene, SceneError>,
+    folder: bool,
+    options: &DrawOptions,
+    pool: &ThreadPool,
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    let scene = load()?;
+    let (spheres, triangles) = (scene.spheres.len(), scene.triangles.len());
+    let PictureSize { width, height } = options.size;
+    let view = view(&scene, options.size, options.samples)?;
+    let loaded = Instant::now();
+
+    let renderer = pool.install(|| Renderer::new(scene));
+    let built = Instant::now();
+
+    // Made before the work, so that a folder that cannot be made is told at once.
+    let target = Target::new(options.out.as_deref(), name, options.format, folder)?;
+    let maxval = options.depth.maxval();
+    let progress = Progress::new(height, options.quiet);
+    let render::Rows { samples, rays, hits } =
+        pool.install(|| renderer.rows(&view, 0..height, maxval, &|rows| progress.advance(rows)));
+    progress.finish();
+    let traced = Instant::now();
+
+    let pixmap = Pixmap::new(width as usize, height as usize, maxval, samples)
+        .expect("the renderer fills the picture with samples up to maxval");
+    target.write(&pixmap, target.format(options.format))?;
+    let written = Instant::now();
+
+    if !options.quiet && target != Target::Stdout {
+        let seconds = (written - start).as_secs_f64();
+        // A note that nobody can read is no reason to fail.
+        let _ = writeln!(io::stderr(), "{}: {width} x {height} in {seconds:.2} s", target.name());
+    }
+    if options.json {
+        let account = Account {
+            picture: target.name(),
+            width,
+            height,
+            samples: options.samples,
+            spheres,
+            triangles,
+            rays,
+            hits,
+            seconds: Seconds {
+                load: (loaded - start).as_secs_f64(),
+                build: (built - loaded).as_secs_f64(),
+                trace: (traced - built).as_secs_f64(),
+                write: (written - traced).as_secs_f64(),
+            },
+            peak_memory_bytes: peak_memory(),
+        };
+        to_stdout(format!("{}\n", serde_json::to_string(&account)?).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure> {
+    let PictureSize { width, height } = size;
+    scene
+        .view(Size { width, height, samples })
+        .ok_or_else(|| Failure::Failed("the camera cannot fit the scene: no finite sphere holds it".into()))
+}
+
+/// Prints how many sphere tests the report's tree makes for the picture of a scene, beside the plain loop.
+///
+/// `scene` is a figure's number or a scene file.
+///
+/// # Errors
+/// What is wrong with the scene, or a failed write.
+pub fn count_tests(scene: &Path, size: PictureSize) -> Result<(), Failure> {
+    let figure = scene.to_str().and_then(|text| text.parse().ok()).and_then(Figure::numbered);
+    let scene = figure.map_or_else(|| scene_file::load(scene), Figure::scene)?;
+    let view = view(&scene, size, 1)?;
+    let objects = scene.len() as u64;
+    let tree = HalvingTree::new(scene.spheres, scene.triangles);
+    let PictureSize { width, height } = size;
+    let tests: u64 = (0..height)
+        .into_par_iter()
+        .flat_map_iter(|row| (0..width).map(move |column| (column, row)))
+        .map(|(column, row)| tree.closest_counted(&view.ray(column, row), AHEAD).1 as u64)
+        .sum();
+    let rays = u64::from(width) * u64::from(height);
+    let per_ray = tests as f64 / rays as f64;
+    let text = format!(
+        "rays              {rays}\n\
+         tests of a loop   {objects} a ray\n\
+         tests of the tree {per_ray:.1} a ray (index halves; nodes and objects)\n"
+    );
+    to_stdout(text.as_bytes())
+}
+
+/// A line on stderr that shows how far the work is: only at a terminal, and only if it takes a while.
+struct Progress {
+    start: Instant,
+    bar: ProgressBar,
+    quiet: bool,
+    shown: Mutex<bool>,
+}
+
+impl Progress {
+    fn new(rows: u32, quiet: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(u64::from(rows)), ProgressDrawTarget::hidden());
+        let style = ProgressStyle::with_template("{bar:40} {percent}% {eta} left").expect("a valid template");
+        bar.set_style(style);
+        Self { start: Instant::now(), bar, quiet, shown: Mutex::new(false) }
+    }
+
+    fn advance(&self, rows: u64) {
+        self.bar.inc(rows);
+        if self.quiet || self.start.elapsed() < PATIENCE {
+            return;
+        }
+        let mut shown = self.shown.lock().expect("no thread panics while it holds the lock");
+        if !*shown {
+            *shown = true;
+            // Hidden all the same where stderr is no terminal.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+    }
+
+    fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The largest amount of memory that this process has held, in bytes, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok().map(|kilobytes| kilobytes * 1024)
+}

@@ -1,0 +1,406 @@
+//! Scene files: from TOML to a checked [`Scene`]. `docs/scene-format.md` describes them for people who write them.
+//!
+//! The text is parsed into tables that mirror the format one to one, each value with its place in the file; unknown
+//! keys are refused there. Then every number is checked, names are resolved and files are read. The first thing that
+//! is wrong ends it, told as `file:line:column: message`.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+
+use glam::DVec3;
+use rt_geom::{Sphere, Triangle};
+use rt_shade::{Material, PointLight, Texture};
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::camera::Camera;
+use crate::figure::asset;
+use crate::scene::{Filter, Look, Paint, Scene};
+use crate::texture_file;
+
+/// The largest scene file that is read. More spheres than fit belong into a bulk file.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// What is wrong with a scene file, and where.
+#[derive(Debug, thiserror::Error)]
+#[error("{place}: {problem}")]
+pub struct SceneError {
+    place: String,
+    #[source]
+    problem: Box<Problem>,
+}
+
+#[derive(Debug, thiserror::Error)]
+enum Problem {
+    #[error("{0}")]
+    Syntax(String),
+    #[error("cannot read it: {0}")]
+    Read(std::io::Error),
+    #[error("not UTF-8 text; a scene file is TOML")]
+    NotText,
+    #[error("larger than {} MiB; put the spheres into an XYZ file", MAX_BYTES >> 20)]
+    TooLarge,
+    #[error("{name} must be finite, found {found}")]
+    NotFinite { name: &'static str, found: String },
+    #[error("{name} must not be negative, found {found}")]
+    Negative { name: &'static str, found: f64 },
+    #[error("{name} must be more than 0, found {found}")]
+    NotPositive { name: &'static str, found: f64 },
+    #[error("{name} must be three numbers from 0 to 1, found {found}")]
+    NoColor { name: &'static str, found: String },
+    #[error("material {name:?} is not defined; {known}")]
+    UnknownMaterial { name: String, known: String },
+    #[error("material {0:?} has neither a color nor a texture")]
+    NoPaint(String),
+    #[error("material {0:?} has both a color and a texture; keep one")]
+    TwoPaints(String),
+    #[error("{0} is for a material with a texture")]
+    NoTexture(&'static str),
+    #[error("a triangle cannot have a texture, and material {0:?} has one")]
+    TexturedTriangle(String),
+    #[error("a triangle needs a material or colors")]
+    BareTriangle,
+    #[error("the triangle has no area: its vertices lie on one line")]
+    FlatTriangle,
+    #[error(transparent)]
+    Camera(crate::camera::CameraError),
+    #[error(transparent)]
+    Texture(rt_io::ReadImageError),
+    #[error("no objects; add a [[sphere]] or a [[triangle]]")]
+    Empty,
+    #[error("more than {} materials", u32::MAX)]
+    TooManyLooks,
+}
+
+// The tables of the format, one to one.
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SceneTable {
+    #[serde(default)]
+    camera: Option<Spanned<CameraTable>>,
+    #[serde(default)]
+    background: Option<Vector>,
+    #[serde(default)]
+    light: Vec<LightTable>,
+    #[serde(default)]
+    material: BTreeMap<String, Spanned<MaterialTable>>,
+    #[serde(default)]
+    sphere: Vec<SphereTable>,
+    #[serde(default)]
+    triangle: Vec<Spanned<TriangleTable>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraTable {
+    eye: Option<Vector>,
+    look_at: Option<Vector>,
+    up: Option<Vector>,
+    fov: Option<Number>,
+    #[serde(default)]
+    fit: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LightTable {
+    position: Vector,
+    color: Option<Vector>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialTable {
+    color: Option<Vector>,
+    texture: Option<Spanned<String>>,
+    mirrored: Option<Spanned<bool>>,
+    filter: Option<Spanned<Filter>>,
+    ambient: Option<Number>,
+    diffuse: Option<Number>,
+    specular: Option<Number>,
+    shininess: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SphereTable {
+    center: Vector,
+    radius: Number,
+    material: Spanned<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TriangleTable {
+    a: Vector,
+    b: Vector,
+    c: Vector,
+    material: Option<Spanned<String>>,
+    colors: Option<Spanned<[Vector; 3]>>,
+}
+
+type Number = Spanned<f64>;
+type Vector = Spanned<[f64; 3]>;
+
+/// What a material is unless its table says otherwise; `docs/scene-format.md` states it.
+pub const DEFAULT_MATERIAL: Material =
+    Material { ambient: 0.1, diffuse: 0.8, specular: 0.3, shininess: 32.0 };
+
+/// Where the files that a scene names are looked up.
+#[derive(Clone, Copy, Debug)]
+enum Files<'a> {
+    /// In this folder.
+    Folder(&'a Path),
+    /// Among the files in the program.
+    Embedded,
+}
+
+/// Reads the scene file at `path`; the files that it names are looked up beside it.
+///
+/// # Errors
+/// Whatever is wrong with the file or the files that it names, with its place.
+pub fn load(path: &Path) -> Result<Scene, SceneError> {
+    let name = path.display().to_string();
+    let refuse = |problem| SceneError { place: name.clone(), problem: Box::new(problem) };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| refuse(Problem::Read(error)))?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| refuse(Problem::Read(error)))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(refuse(Problem::TooLarge));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| refuse(Problem::NotText))?;
+    parse(&text, &name, Files::Folder(path.parent().unwrap_or(Path::new(""))))
+}
+
+/// Reads a scene that is part of the program.
+///
+/// # Errors
+/// As [`load`].
+pub fn embedded(text: &str, name: &str) -> Result<Scene, SceneError> {
+    parse(text, name, Files::Embedded)
+}
+
+fn parse(text: &str, name: &str, files: Files<'_>) -> Result<Scene, SceneError> {
+    Checker { text, name, files }.scene()
+}
+
+/// Turns tables into the scene. Its methods check one kind of value each.
+struct Checker<'a> {
+    text: &'a str,
+    name: &'a str,
+    files: Files<'a>,
+}
+
+impl Checker<'_> {
+    fn scene(&self) -> Result<Scene, SceneError> {
+        let table: SceneTable = toml::from_str(self.text).map_err(|error| {
+            let message = error.message().trim().replace('\n', ", ").replace('`', "\"");
+            self.refuse(error.span().unwrap_or(0..0), Problem::Syntax(message))
+        })?;
+        let mut scene = Scene::empty();
+        if let Some(camera) = table.camera {
+            scene.camera = self.camera(&camera)?;
+        }
+        if let Some(color) = &table.background {
+            scene.background = self.color("background", color)?;
+        }
+        for light in &table.light {
+            let color = light.color.as_ref().map_or(Ok(DVec3::ONE), |color| self.color("color", color))?;
+            scene.lights.push(PointLight { position: self.point("position", &light.position)?, color });
+        }
+        let mut materials = BTreeMap::new();
+        for (material, table) in &table.material {
+            materials.insert(
+                material.as_str(),
+                self.push(&mut scene.looks, table.span(), |_| self.look(material, table))?,
+            );
+        }
+        for sphere in &table.sphere {
+            let center = self.point("center", &sphere.center)?;
+            let radius = self.not_negative("radius", &sphere.radius)?;
+            let look = self.material(&materials, &sphere.material)?;
+            scene.spheres.push(Sphere::new(center, radius).expect("center and radius were checked"));
+            scene.sphere_looks.push(look);
+        }
+        let mut bare = None;
+        for triangle in &table.triangle {
+            self.triangle(triangle, &materials, &mut bare, &mut scene)?;
+        }
+        if scene.vertex_colors.iter().all(Option::is_none) {
+            scene.vertex_colors.clear();
+        }
+        if scene.is_empty() {
+            return Err(self.refuse(0..0, Problem::Empty));
+        }
+        Ok(scene)
+    }
+
+    fn camera(&self, table: &Spanned<CameraTable>) -> Result<Camera, SceneError> {
+        let CameraTable { eye, look_at, up, fov, fit } = table.get_ref();
+        let point = |name, value: &Option<Vector>, default| {
+            value.as_ref().map_or(Ok(default), |value| self.point(name, value))
+        };
+        let eye = point("eye", eye, DVec3::ZERO)?;
+        let look_at = point("look_at", look_at, eye + DVec3::NEG_Z)?;
+        let up = point("up", up, DVec3::Y)?;
+        let degrees = fov.as_ref().map_or(90.0, |fov| *fov.get_ref());
+        let camera = Camera::new(eye, look_at, up, degrees).map_err(|error| {
+            let place = fov.as_ref().filter(|_| error == crate::camera::CameraError::FieldOfView);
+            self.refuse(place.map_or(table.span(), Spanned::span), Problem::Camera(error))
+        })?;
+        Ok(if *fit { camera.fitted() } else { camera })
+    }
+
+    fn look(&self, name: &str, table: &Spanned<MaterialTable>) -> Result<Look, SceneError> {
+        let MaterialTable { color, texture, mirrored, filter, ambient, diffuse, specular, shininess } =
+            table.get_ref();
+        let paint = match (color, texture) {
+            (Some(_), Some(_)) => return Err(self.refuse(table.span(), Problem::TwoPaints(name.to_owned()))),
+            (None, None) => return Err(self.refuse(table.span(), Problem::NoPaint(name.to_owned()))),
+            (Some(color), None) => {
+                let misplaced = [
+                    mirrored.as_ref().map(|value| ("mirrored", value.span())),
+                    filter.as_ref().map(|value| ("filter", value.span())),
+                ];
+                if let Some((key, span)) = misplaced.into_iter().flatten().next() {
+                    return Err(self.refuse(span, Problem::NoTexture(key)));
+                }
+                Paint::Color(self.color("color", color)?)
+            }
+            (None, Some(file)) => Paint::Image {
+                texture: self.texture(file)?,
+                mirrored: mirrored.as_ref().is_some_and(|value| *value.get_ref()),
+                filter: filter.as_ref().map_or_else(Filter::default, |value| *value.get_ref()),
+            },
+        };
+        let coefficient = |name, value: &Option<Number>, default| {
+            value.as_ref().map_or(Ok(default), |value| self.not_negative(name, value))
+        };
+        let material = Material {
+            ambient: coefficient("ambient", ambient, DEFAULT_MATERIAL.ambient)?,
+            diffuse: coefficient("diffuse", diffuse, DEFAULT_MATERIAL.diffuse)?,
+            specular: coefficient("specular", specular, DEFAULT_MATERIAL.specular)?,
+            shininess: coefficient("shininess", shininess, DEFAULT_MATERIAL.shininess)?,
+        };
+        if material.shininess == 0.0 {
+            let span = shininess.as_ref().map_or(table.span(), Spanned::span);
+            return Err(self.refuse(span, Problem::NotPositive { name: "shininess", found: 0.0 }));
+        }
+        Ok(Look { paint, material })
+    }
+
+    fn texture(&self, file: &Spanned<String>) -> Result<Texture, SceneError> {
+        let read = match self.files {
+            Files::Folder(folder) => texture_file::load(&folder.join(file.get_ref())),
+            Files::Embedded => {
+                let name = file.get_ref();
+                texture_file::decode(asset(name).expect("a test loads every figure"), name)
+            }
+        };
+        read.map_err(|error| self.refuse(file.span(), Problem::Texture(error)))
+    }
+
+    fn triangle(
+        &self,
+        table: &Spanned<TriangleTable>,
+        materials: &BTreeMap<&str, u32>,
+        bare: &mut Option<u32>,
+        scene: &mut Scene,
+    ) -> Result<(), SceneError> {
+        let TriangleTable { a, b, c, material, colors } = table.get_ref();
+        let [a, b, c] = [self.point("a", a)?, self.point("b", b)?, self.point("c", c)?];
+        let triangle = Triangle::new(a, b, c).expect("the vertices were checked");
+        if triangle.is_degenerate() {
+            return Err(self.refuse(table.span(), Problem::FlatTriangle));
+        }
+        let look = match (material, colors, *bare) {
+            (Some(material), ..) => {
+                let look = self.material(materials, material)?;
+                if matches!(scene.looks[look as usize].paint, Paint::Image { .. }) {
+                    let name = material.get_ref().clone();
+                    return Err(self.refuse(material.span(), Problem::TexturedTriangle(name)));
+                }
+                look
+            }
+            (None, Some(_), Some(bare)) => bare,
+            (None, Some(_), None) => {
+                let white = || Look { paint: Paint::Color(DVec3::ONE), material: DEFAULT_MATERIAL };
+                *bare.insert(self.push(&mut scene.looks, table.span(), |_| Ok(white()))?)
+            }
+            (None, None, _) => return Err(self.refuse(table.span(), Problem::BareTriangle)),
+        };
+        let colors = colors.as_ref().map(|colors| {
+            let [a, b, c] = colors.get_ref();
+            Ok([self.color("colors", a)?, self.color("colors", b)?, self.color("colors", c)?])
+        });
+        scene.triangles.push(triangle);
+        scene.triangle_looks.push(look);
+        scene.vertex_colors.push(colors.transpose()?);
+        Ok(())
+    }
+
+    /// Adds a look to the list and returns its position.
+    fn push(
+        &self,
+        looks: &mut Vec<Look>,
+        span: Range<usize>,
+        look: impl FnOnce(&Self) -> Result<Look, SceneError>,
+    ) -> Result<u32, SceneError> {
+        let position = u32::try_from(looks.len()).map_err(|_| self.refuse(span, Problem::TooManyLooks))?;
+        looks.push(look(self)?);
+        Ok(position)
+    }
+
+    fn material(&self, materials: &BTreeMap<&str, u32>, name: &Spanned<String>) -> Result<u32, SceneError> {
+        materials.get(name.get_ref().as_str()).copied().ok_or_else(|| {
+            let known = match materials.len() {
+                0 => "no material is".to_owned(),
+                _ => {
+                    let names: Vec<String> = materials.keys().map(|name| format!("{name:?}")).collect();
+                    format!("there is {}", names.join(", "))
+                }
+            };
+            self.refuse(name.span(), Problem::UnknownMaterial { name: name.get_ref().clone(), known })
+        })
+    }
+
+    fn not_negative(&self, name: &'static str, value: &Number) -> Result<f64, SceneError> {
+        let found = *value.get_ref();
+        if !found.is_finite() {
+            return Err(self.refuse(value.span(), Problem::NotFinite { name, found: found.to_string() }));
+        }
+        if found < 0.0 {
+            return Err(self.refuse(value.span(), Problem::Negative { name, found }));
+        }
+        Ok(found)
+    }
+
+    fn point(&self, name: &'static str, value: &Vector) -> Result<DVec3, SceneError> {
+        let found = DVec3::from_array(*value.get_ref());
+        if !found.is_finite() {
+            return Err(self.refuse(value.span(), Problem::NotFinite { name, found: found.to_string() }));
+        }
+        Ok(found)
+    }
+
+    fn color(&self, name: &'static str, value: &Vector) -> Result<DVec3, SceneError> {
+        let found = DVec3::from_array(*value.get_ref());
+        // Written so that NaN fails it.
+        if !found.to_array().iter().all(|channel| (0.0..=1.0).contains(channel)) {
+            return Err(self.refuse(value.span(), Problem::NoColor { name, found: found.to_string() }));
+        }
+        Ok(found)
+    }
+
+    /// The error `problem` at the start of `span`; lines and columns count from 1, columns in characters.
+    fn refuse(&self, span: Range<usize>, problem: Problem) -> SceneError {
+        let before = &self.text[..self.text.floor_char_boundary(span.start)];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+        SceneError { place: format!("{}:{line}:{column}", self.name), problem: Box::new(problem) }
+    }
+}

@@ -1,0 +1,22 @@
+//! Textures from image files: PPM, PNG, JPEG or TIFF, told apart by their content.
+
+use std::path::Path;
+
+use rt_io::{Limits, Pixmap, ReadImageError, decode_image, read_image};
+use rt_shade::Texture;
+
+/// Reads the image at `path`.
+pub(crate) fn load(path: &Path) -> Result<Texture, ReadImageError> {
+    read_image(path, &Limits::default()).map(|image| texture(image.pixmap))
+}
+
+/// Reads the image in `bytes`, which errors call `path`.
+pub(crate) fn decode(bytes: &[u8], path: &str) -> Result<Texture, ReadImageError> {
+    let image = decode_image(bytes, &Limits::default());
+    image.map(|image| texture(image.pixmap)).map_err(|source| ReadImageError { path: path.into(), source })
+}
+
+fn texture(pixmap: Pixmap) -> Texture {
+    let (width, height, maxval) = (pixmap.width(), pixmap.height(), pixmap.maxval());
+    Texture::new(width, height, pixmap.into_samples(), maxval).expect("a pixmap's invariant is a texture's")
+}
