@@ -4,7 +4,7 @@
 //! within one folder. A temporary is called `.NAME.ID.tmp` and is locked by the process that writes it. When that
 //! process dies, the lock goes with it; the next save of the same target finds the temporary unlocked and removes it.
 //! The lock, unlike a process number in the name, also tells the living from the dead between machines that share a
-//! folder.
+//! folder. On a file system without locks nobody can tell, and what a dead process left stays.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
@@ -74,6 +74,9 @@ pub fn save_atomically(
 ) -> Result<(), SaveError> {
     let open_error = |source| SaveError::Open { path: path.to_path_buf(), source };
     let write_error = |source| SaveError::Write { path: path.to_path_buf(), source };
+    if path.as_os_str().is_empty() {
+        return Err(open_error(io::Error::other("an empty path names no file")));
+    }
     if path.to_string_lossy().ends_with(path::is_separator) {
         return Err(SaveError::Folder { path: path.to_path_buf() });
     }

@@ -1,0 +1,378 @@
+//! A save leaves the old file or the new one, whole, and nothing else: after a kill at any moment, on a full disk, in a
+//! folder that cannot be written, with several savers at once.
+#![cfg(unix)]
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use rt_io::{SaveError, save_atomically};
+
+/// A folder of its own for a test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("rt-io-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn join(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    /// The names of all files, sorted.
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn save_text(path: &Path, text: &str) -> Result<(), SaveError> {
+    save_atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// The message with all its causes.
+fn full_message(error: &dyn Error) -> String {
+    match error.source() {
+        Some(source) => format!("{error}: {}", full_message(source)),
+        None => error.to_string(),
+    }
+}
+
+const LENGTH: usize = 100_000;
+
+/// A file of the `version`: its length and every byte can be checked.
+fn save_version(path: &Path, version: u8) -> Result<(), SaveError> {
+    save_atomically(path, |out| (0..LENGTH / 100).try_for_each(|_| out.write_all(&[version; 100])))
+}
+
+fn check_version(path: &Path) -> u8 {
+    let bytes = fs::read(path).unwrap();
+    assert_eq!(bytes.len(), LENGTH, "half a file");
+    assert!(bytes.iter().all(|byte| *byte == bytes[0]), "a mixture of two files");
+    bytes[0]
+}
+
+/// This very test program, as another process that runs `helper_process` alone.
+fn helper(wrapper: &[&str], mode: &str, target: &Path) -> Command {
+    let program = std::env::current_exe().unwrap();
+    let mut words = wrapper.iter().map(OsStr::new).chain([program.as_os_str()]);
+    let mut command = Command::new(words.next().unwrap());
+    command.args(words).args(["--exact", "helper_process", "--nocapture", "--test-threads=1"]);
+    command.env("RT_IO_HELPER", mode).env("RT_IO_TARGET", target).stdout(Stdio::piped());
+    command
+}
+
+/// Does nothing unless it is started by another test: saves once and tells how that went, or saves until it is killed.
+#[test]
+fn helper_process() {
+    let Some(mode) = std::env::var_os("RT_IO_HELPER") else { return };
+    let target = PathBuf::from(std::env::var_os("RT_IO_TARGET").unwrap());
+    if mode == "once" {
+        match save_version(&target, 2) {
+            Ok(()) => println!("\nsaved"),
+            Err(error) => println!("\nrefused: {}", full_message(&error)),
+        }
+        return;
+    }
+    println!("\nready");
+    for version in (2..=255).cycle() {
+        save_version(&target, version).unwrap();
+    }
+}
+
+/// What `helper_process` says about its one save, `None` if it could not be started in this way.
+fn helper_says(wrapper: &[&str], target: &Path) -> Option<String> {
+    let output = helper(wrapper, "once", target).stderr(Stdio::piped()).output().ok()?;
+    let text = String::from_utf8(output.stdout).unwrap();
+    let line = text.lines().find(|line| line.starts_with("saved") || line.starts_with("refused"));
+    if line.is_none() {
+        eprintln!("SKIPPED: {wrapper:?} fails here: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    line.map(str::to_string)
+}
+
+#[test]
+fn two_hundred_kills_leave_whole_files_and_at_most_one_temporary() {
+    let folder = Folder::new("kills");
+    let target = folder.join("image.ppm");
+    save_version(&target, 1).unwrap();
+    let (mut advanced, mut left) = (0, 0);
+    for kill in 0..200_u64 {
+        let before = check_version(&target);
+        let mut child = helper(&[], "forever", &target).spawn().unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        assert!(lines.any(|line| line.unwrap() == "ready"));
+        // From no time to the time of a few saves, in steps that have no common rhythm with them.
+        std::thread::sleep(Duration::from_micros(kill * 6173 % 10_007));
+        child.kill().unwrap();
+        child.wait().unwrap();
+
+        advanced += usize::from(check_version(&target) != before);
+        let names = folder.names();
+        assert!(names.len() <= 2, "{names:?}");
+        left += names.len() - 1;
+    }
+    // The kills did hit saves, before and after the rename.
+    assert!(advanced > 20 && left > 20, "{advanced} advanced, {left} left a temporary");
+    save_version(&target, 1).unwrap();
+    assert_eq!(folder.names(), ["image.ppm"]);
+}
+
+#[test]
+fn savers_at_once_do_not_disturb_each_other() {
+    let folder = Folder::new("at-once");
+    let target = folder.join("image.ppm");
+    save_version(&target, 1).unwrap();
+    std::thread::scope(|scope| {
+        for version in 2..8 {
+            let target = &target;
+            scope.spawn(move || {
+                for _ in 0..20 {
+                    save_version(target, version).unwrap();
+                    check_version(target);
+                }
+            });
+        }
+    });
+    assert_eq!(folder.names(), ["image.ppm"]);
+}
+
+#[test]
+fn only_dead_temporaries_of_the_same_target_are_removed() {
+    let folder = Folder::new("stale");
+    let stale = ".a.ppm.0000000000000000.tmp";
+    let others = [
+        ".a.ppm.000000000000000g.tmp",
+        ".a.ppm.00000000.tmp",
+        ".a.ppm.0000000000000000.tmp.bak",
+        ".b.ppm.0000000000000000.tmp",
+        "a.ppm.0000000000000000.tmp",
+    ];
+    for name in others.iter().chain([&stale]) {
+        fs::write(folder.join(name), "").unwrap();
+    }
+    fs::create_dir(folder.join(".a.ppm.00000000000000aa.tmp")).unwrap();
+    let living = File::create(folder.join(".a.ppm.00000000000000bb.tmp")).unwrap();
+    living.lock().unwrap();
+    save_text(&folder.join("a.ppm"), "new").unwrap();
+    let mut expected = others.map(str::to_string).to_vec();
+    expected
+        .extend(["a.ppm", ".a.ppm.00000000000000aa.tmp", ".a.ppm.00000000000000bb.tmp"].map(str::to_string));
+    expected.sort();
+    assert_eq!(folder.names(), expected);
+}
+
+#[test]
+fn a_full_disk_leaves_the_old_file_and_no_temporary() {
+    // A file system of 64 KiB that only this process and its children see.
+    let folder = Folder::new("full");
+    let script = r#"mount -t tmpfs -o size=64k none "$RT_IO_FOLDER" && echo old > "$RT_IO_TARGET" && "$0" "$@";
+        ls -A "$RT_IO_FOLDER"; cat "$RT_IO_TARGET""#;
+    let output = helper(
+        &["unshare", "--mount", "--map-root-user", "sh", "-c", script],
+        "once",
+        &folder.join("image.ppm"),
+    )
+    .env("RT_IO_FOLDER", &folder.0)
+    .stderr(Stdio::piped())
+    .output();
+    match output {
+        Ok(output) if output.stderr.is_empty() => {
+            let text = String::from_utf8(output.stdout).unwrap();
+            let message = format!(
+                "refused: {}: writing failed: No space left on device (os error 28)\n",
+                folder.join("image.ppm").display()
+            );
+            assert!(text.contains(&message), "{text}");
+            assert!(text.ends_with("\nimage.ppm\nold\n"), "{text}");
+        }
+        other => eprintln!("SKIPPED: no file system of its own: {other:?}"),
+    }
+
+    // The same by a limit on the size of a file, which any shell can set.
+    let target = folder.join("limited.ppm");
+    save_text(&target, "old").unwrap();
+    let says = helper_says(&["sh", "-c", r#"trap '' XFSZ; ulimit -f 64; exec "$0" "$@""#], &target).unwrap();
+    assert_eq!(says, format!("refused: {}: writing failed: File too large (os error 27)", target.display()));
+    assert_eq!(fs::read(&target).unwrap(), b"old");
+    assert_eq!(folder.names(), ["limited.ppm"]);
+}
+
+#[test]
+fn an_error_of_the_closure_leaves_the_old_file_and_no_temporary() {
+    let folder = Folder::new("closure");
+    let target = folder.join("image.ppm");
+    save_text(&target, "old").unwrap();
+    let error = save_atomically(&target, |out| {
+        out.write_all(b"half")?;
+        Err(io::Error::other("no more"))
+    });
+    assert_eq!(full_message(&error.unwrap_err()), format!("{}: writing failed: no more", target.display()));
+    let panic = std::panic::catch_unwind(|| save_atomically(&target, |_| panic!("on purpose")));
+    assert!(panic.is_err());
+    assert_eq!(fs::read(&target).unwrap(), b"old");
+    assert_eq!(folder.names(), ["image.ppm"]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named() {
+    let folder = Folder::new("places");
+    let show = |name: &str| folder.join(name).display().to_string();
+    let message = |path: &Path| full_message(&save_text(path, "new").unwrap_err());
+
+    assert_eq!(
+        message(&folder.join("missing/image.ppm")),
+        format!(
+            "{}: the folder {} does not exist; create it first",
+            show("missing/image.ppm"),
+            show("missing")
+        )
+    );
+    assert_eq!(message(&folder.0), format!("{} is a folder, not a file", folder.0.display()));
+    assert_eq!(message(&folder.join("new/")), format!("{} is a folder, not a file", show("new/")));
+    assert_eq!(message(Path::new("")), ": cannot be written: an empty path names no file");
+    fs::write(folder.join("file"), "old").unwrap();
+    assert_eq!(
+        message(&folder.join("file/image.ppm")),
+        format!("{}: cannot be written: Not a directory (os error 20)", show("file/image.ppm"))
+    );
+    symlink("circle", folder.join("circle")).unwrap();
+    assert_eq!(
+        message(&folder.join("circle")),
+        format!("{}: cannot be written: too many symbolic links", show("circle"))
+    );
+    let long = "x".repeat(300);
+    assert!(message(&folder.join(&long)).contains("File name too long"));
+    assert_eq!(folder.names(), ["circle", "file"]);
+    assert_eq!(fs::read(folder.join("file")).unwrap(), b"old");
+}
+
+#[test]
+fn a_read_only_folder_or_file_is_refused() {
+    let folder = Folder::new("read-only");
+    let target = folder.join("image.ppm");
+    save_text(&target, "old").unwrap();
+    // The superuser may write anywhere, so the save is done by somebody else.
+    let is_root = fs::metadata("/proc/self").is_ok_and(|metadata| metadata.uid() == 0);
+    let wrapper: &[&str] = if is_root { &["setpriv", "--reuid=65534", "--clear-groups"] } else { &[] };
+    let denied = format!("refused: {}: cannot be written: Permission denied (os error 13)", target.display());
+
+    // A file that may be written in a folder that may not.
+    fs::set_permissions(&target, PermissionsExt::from_mode(0o666)).unwrap();
+    fs::set_permissions(&folder.0, PermissionsExt::from_mode(0o555)).unwrap();
+    let says = helper_says(wrapper, &target);
+    assert!(says.is_none_or(|says| says == denied));
+
+    // A file that may not be written in a folder that may.
+    fs::set_permissions(&target, PermissionsExt::from_mode(0o444)).unwrap();
+    fs::set_permissions(&folder.0, PermissionsExt::from_mode(0o777)).unwrap();
+    let says = helper_says(wrapper, &target);
+    assert!(says.is_none_or(|says| says == denied));
+    assert_eq!(fs::read(&target).unwrap(), b"old");
+    assert_eq!(folder.names(), ["image.ppm"]);
+}
+
+#[test]
+fn devices_and_pipes_are_written_and_not_replaced() {
+    if Path::new("/dev/full").exists() {
+        let error = save_text(Path::new("/dev/full"), "new").unwrap_err();
+        assert_eq!(full_message(&error), "/dev/full: writing failed: No space left on device (os error 28)");
+        save_text(Path::new("/dev/null"), "new").unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+
+    let folder = Folder::new("devices");
+    let fifo = folder.join("fifo");
+    if Command::new("mkfifo").arg(&fifo).status().is_ok_and(|status| status.success()) {
+        let link = folder.join("link");
+        symlink("fifo", &link).unwrap();
+        let reader = std::thread::spawn({
+            let fifo = fifo.clone();
+            move || fs::read(fifo).unwrap()
+        });
+        save_text(&link, "through the pipe").unwrap();
+        assert_eq!(reader.join().unwrap(), b"through the pipe");
+        assert_eq!(folder.names(), ["fifo", "link"]);
+    }
+
+    // /dev/stdout is a pipe here, and below a file that holds something already.
+    if cfg!(target_os = "linux") {
+        let mut child = helper(&[], "once", Path::new("/dev/stdout")).spawn().unwrap();
+        let mut bytes = Vec::new();
+        child.stdout.take().unwrap().read_to_end(&mut bytes).unwrap();
+        assert!(child.wait().unwrap().success());
+        assert_eq!(bytes.iter().filter(|byte| **byte == 2).count(), LENGTH);
+
+        let out = folder.join("out");
+        fs::write(&out, "kept").unwrap();
+        let appending = File::options().append(true).open(&out).unwrap();
+        let inode = fs::metadata(&out).unwrap().ino();
+        assert!(helper(&[], "once", Path::new("/dev/stdout")).stdout(appending).status().unwrap().success());
+        let bytes = fs::read(&out).unwrap();
+        assert!(bytes.starts_with(b"kept") && bytes.iter().filter(|byte| **byte == 2).count() == LENGTH);
+        assert_eq!(fs::metadata(&out).unwrap().ino(), inode);
+    }
+}
+
+#[test]
+fn links_are_followed_and_permissions_kept() {
+    let folder = Folder::new("links");
+    let mode = |name: &str| fs::metadata(folder.join(name)).unwrap().permissions().mode() & 0o7777;
+
+    // A new file is like any other new file.
+    File::create(folder.join("ordinary")).unwrap();
+    save_text(&folder.join("new"), "new").unwrap();
+    assert_eq!(mode("new"), mode("ordinary"));
+
+    // An old one keeps its mode.
+    for bits in [0o600, 0o644, 0o666, 0o755] {
+        fs::set_permissions(folder.join("new"), PermissionsExt::from_mode(bits)).unwrap();
+        save_text(&folder.join("new"), "newer").unwrap();
+        assert_eq!(mode("new"), bits);
+    }
+
+    // A link, and a link to a link from another folder, stay links.
+    fs::create_dir(folder.join("inner")).unwrap();
+    symlink("new", folder.join("link")).unwrap();
+    symlink("../link", folder.join("inner/link")).unwrap();
+    save_text(&folder.join("inner/link"), "newest").unwrap();
+    assert!(fs::symlink_metadata(folder.join("link")).unwrap().is_symlink());
+    assert!(fs::symlink_metadata(folder.join("inner/link")).unwrap().is_symlink());
+    assert_eq!(fs::read(folder.join("new")).unwrap(), b"newest");
+
+    // A link to nothing makes what it names.
+    symlink("created", folder.join("dangling")).unwrap();
+    save_text(&folder.join("dangling"), "there").unwrap();
+    assert_eq!(fs::read(folder.join("created")).unwrap(), b"there");
+    assert_eq!(folder.names(), ["created", "dangling", "inner", "link", "new", "ordinary"]);
+}
+
+#[test]
+fn names_at_the_limit_and_not_in_unicode_are_saved() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::new("names");
+    let long = "é".repeat(127);
+    save_text(&folder.join(&long), "long").unwrap();
+    assert_eq!(fs::read(folder.join(&long)).unwrap(), b"long");
+    let odd = folder.0.join(OsStr::from_bytes(b"\xff.ppm"));
+    save_text(&odd, "odd").unwrap();
+    assert_eq!(fs::read(&odd).unwrap(), b"odd");
+    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 2);
+}
