@@ -22,32 +22,59 @@ impl Ray {
     }
 
     /// Where the ray starts; finite.
+    #[inline]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
     /// Where the ray goes; finite and not zero, of any length.
+    #[inline]
     pub fn direction(&self) -> DVec3 {
         self.direction
     }
 
     /// Returns the point `origin + t direction`, rounded twice per component.
+    ///
+    /// With `u = 2^-53` and `t` the correctly rounded parameter of a hit, each component is off the exact hit by at most
+    /// `u (2.01 |t direction| + 1.01 |point|)`, barring over- and underflow; `docs/numerics.md`, section 5, has the
+    /// proof.
+    #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
     }
 }
 
-/// A ray and a range, with the quantities that every shape needs computed once.
-#[derive(Clone, Debug)]
+/// A ray and a range, with what every shape's test needs computed once.
+///
+/// `reach` and `square` serve the filters, which are proved for directions whose largest component lies between
+/// 2^-100 and 2^100. For any other direction `reach` is NaN: every comparison with an error bound then fails, and
+/// the exact path decides.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct PreparedRay {
     pub(crate) ray: Ray,
-    pub(crate) within: Range<f64>,
+    /// The range of `t` that counts, as in `holds`.
+    pub(crate) start: f64,
+    pub(crate) end: f64,
+    /// The largest component of the direction in magnitude, or NaN.
+    pub(crate) reach: f64,
+    /// `direction . direction` and its reciprocal, rounded.
+    pub(crate) square: f64,
+    pub(crate) inverse_square: f64,
 }
 
 impl PreparedRay {
     #[inline]
     pub(crate) fn new(ray: &Ray, within: Range<f64>) -> Self {
-        Self { ray: *ray, within }
+        const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
+        let reach = max_abs(ray.direction);
+        let reach = if (1.0 / LONGEST..=LONGEST).contains(&reach) { reach } else { f64::NAN };
+        let square = ray.direction.length_squared();
+        Self { ray: *ray, start: within.start, end: within.end, reach, square, inverse_square: 1.0 / square }
+    }
+
+    /// The range.
+    pub(crate) fn within(&self) -> Range<f64> {
+        self.start..self.end
     }
 }
 
@@ -64,11 +91,69 @@ pub(crate) struct Candidate {
 /// Whether the range holds `t`: `start <= t < end` by `total_cmp`, where an infinite end is no bound.
 ///
 /// NaN as a bound or an empty range holds nothing.
+#[inline]
 pub(crate) fn holds(within: &Range<f64>, t: f64) -> bool {
+    // Strictly between numbers there is no question of signed zeros, infinity or NaN.
+    (within.start < t && t < within.end) || holds_at_the_ends(within, t)
+}
+
+#[cold]
+fn holds_at_the_ends(within: &Range<f64>, t: f64) -> bool {
     let Range { start, end } = *within;
     !start.is_nan()
         && !end.is_nan()
         && start.total_cmp(&end).is_lt()
         && start.total_cmp(&t).is_le()
         && (t.total_cmp(&end).is_lt() || end == f64::INFINITY)
+}
+
+/// The larger number; the second if either is NaN. One instruction, unlike `f64::max`.
+#[inline(always)]
+pub(crate) fn larger(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
+}
+
+/// The largest magnitude of a component.
+#[inline(always)]
+pub(crate) fn max_abs(v: DVec3) -> f64 {
+    larger(v.x.abs(), larger(v.y.abs(), v.z.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_holds_its_start_and_not_its_end() {
+        let tiny = f64::from_bits(1);
+        let cases = [
+            (0.0..1.0, 0.0, true),
+            (0.0..1.0, -0.0, false), // a negative root that underflowed lies before zero
+            (0.0..1.0, 1.0, false),
+            (0.0..1.0, 1f64.next_down(), true),
+            (-0.0..0.0, -0.0, true),
+            (-0.0..0.0, 0.0, false),
+            (tiny..1.0, 0.0, false),
+            (0.0..f64::INFINITY, f64::INFINITY, true), // no upper end
+            (0.0..f64::MAX, f64::INFINITY, false),
+            (f64::NEG_INFINITY..0.0, f64::NEG_INFINITY, true),
+            (f64::INFINITY..f64::INFINITY, f64::INFINITY, false), // empty
+            (1.0..0.0, 0.5, false),
+            (f64::NAN..1.0, 0.5, false),
+            (0.0..f64::NAN, 0.5, false),
+            (-f64::NAN..1.0, 0.5, false),
+        ];
+        for (range, t, expected) in cases {
+            assert_eq!(holds(&range, t), expected, "{t:?} in {range:?}");
+        }
+    }
+
+    #[test]
+    fn a_very_long_or_short_direction_leaves_the_filters() {
+        for (length, regular) in [(1.0, true), (1e30, true), (1e31, false), (1e-31, false), (5e-324, false)] {
+            let ray = Ray::new(DVec3::ONE, DVec3::new(0.0, -length, 0.0)).unwrap();
+            let prepared = PreparedRay::new(&ray, 0.0..1.0);
+            assert_eq!(!prepared.reach.is_nan(), regular, "direction of length {length}");
+        }
+    }
 }

@@ -1,4 +1,18 @@
 //! A sphere, and where a ray meets it.
+//!
+//! With `w = origin - center` and `d` the direction, the line meets the sphere where
+//! `(d.d) t² + 2 (w.d) t + (w.w - r²) = 0`. Whether it does is the sign of a quarter of the discriminant in
+//! Lagrange's form,
+//!
+//! ```text
+//!     Delta = (d.d) r² - |w x d|²        (d.d times: radius² minus the squared distance of the line from the center)
+//! ```
+//!
+//! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every
+//! case here; `exact.rs` decides the rest. A root is found as `c / q` or `q / a` with `q = |b| + sqrt(Delta)`, so that
+//! nothing cancels, and one Newton step on the compensated residual `|w + t d|² - r²` brings out the last bits.
+
+mod exact;
 
 use std::ops::Range;
 
@@ -6,7 +20,16 @@ use glam::DVec3;
 use rt_math::Roots;
 
 use crate::Ray;
-use crate::ray::{Candidate, PreparedRay, holds};
+use crate::ray::{Candidate, PreparedRay, holds, max_abs};
+
+/// `2^-53`, the unit roundoff.
+const U: f64 = f64::EPSILON / 2.0;
+
+/// Swallows all errors of underflow in a filter: `2^-500` (`docs/numerics.md`, section 5).
+const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+
+/// Swallows what underflow does to a `t`: `2^-1000`.
+const UNDERFLOW_T: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Where a point lies with regard to a sphere's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,72 +57,263 @@ impl Sphere {
     }
 
     /// The center; finite.
+    #[inline]
     pub fn center(&self) -> DVec3 {
         self.center
     }
 
     /// The radius; finite and not negative.
+    #[inline]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Returns the `t` of the closest hit in the range, or `None`.
+    /// Returns the `t` of the closest hit in the range, correctly rounded, or `None`.
+    ///
+    /// A root counts if `within.start <= t < within.end` for its correctly rounded `t`, compared with
+    /// [`f64::total_cmp`]: an exact zero is +0.0, and a negative root that underflows is -0.0, which lies before it. An
+    /// infinite end is no bound, and a root beyond the largest double is then a hit at infinity. A range that is
+    /// empty or has a NaN holds nothing. From inside the sphere the far side is hit.
+    ///
+    /// Exact for every finite ray and sphere, over- and underflow included; `docs/numerics.md`, section 5, has the proof.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rt_geom::{Ray, Sphere};
+    ///
+    /// let sphere = Sphere::new(DVec3::new(0.0, 0.0, -3.0), 1.0).unwrap();
+    /// let ray = Ray::new(DVec3::ZERO, DVec3::new(0.0, 0.0, -0.5)).unwrap();
+    /// assert_eq!(sphere.closest(&ray, 0.0..f64::INFINITY), Some(4.0)); // in units of the direction
+    /// assert_eq!(sphere.closest(&ray, 5.0..f64::INFINITY), Some(8.0));
+    /// assert_eq!(sphere.closest(&ray, 0.0..4.0), None);
+    /// ```
+    #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        match self.roots(ray) {
-            Roots::One(t) if holds(&within, t) => Some(t),
-            Roots::Two(near, _) if holds(&within, near) => Some(near),
-            Roots::Two(_, far) if holds(&within, far) => Some(far),
-            _ => None,
+        let prepared = PreparedRay::new(ray, within);
+        match self.line(&prepared) {
+            Line::Misses => None,
+            Line::Crosses(crossing) => {
+                let near = crossing.near();
+                let root = if near.low() > prepared.start {
+                    exact::near_root(self, ray, prepared.square, near.t)
+                } else if near.high() < prepared.start {
+                    exact::far_root(self, ray, prepared.square, crossing.far().t)
+                } else {
+                    None
+                };
+                match root {
+                    Some(t) => holds(&prepared.within(), t).then_some(t),
+                    None => exact::closest(self, ray, prepared.within()),
+                }
+            }
+            Line::Unsure => exact::closest(self, ray, prepared.within()),
         }
     }
 
-    /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`.
+    /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
+    #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        self.closest(ray, within).is_some()
+        self.candidate(&PreparedRay::new(ray, within), f64::INFINITY).is_some()
     }
 
-    /// Returns where the whole line meets the surface, in ascending order; a tangent line meets it once.
+    /// Returns where the whole line meets the surface, in ascending order.
+    ///
+    /// The number of roots is exact, a tangent line has one, and each root is correctly rounded: two that differ by
+    /// less than the spacing of doubles come out equal. Never `Roots::All`.
     pub fn roots(&self, ray: &Ray) -> Roots {
-        let d = ray.direction();
-        let w = ray.origin() - self.center;
-        let a = d.length_squared();
-        let b = w.dot(d);
-        let delta = a * (self.radius * self.radius) - w.cross(d).length_squared();
-        if delta == 0.0 {
-            Roots::One(0.0 - b / a)
-        } else if delta > 0.0 {
-            let q = -(b + delta.sqrt().copysign(b));
-            let distance = w.length();
-            let c = (distance - self.radius) * (distance + self.radius);
-            let (s, t) = (q / a + 0.0, c / q + 0.0);
-            Roots::Two(s.min(t), s.max(t))
-        } else {
-            Roots::None
+        let prepared = PreparedRay::new(ray, f64::NEG_INFINITY..f64::INFINITY);
+        match self.line(&prepared) {
+            Line::Misses => Roots::None,
+            Line::Crosses(crossing) => {
+                let near = exact::near_root(self, ray, prepared.square, crossing.near().t);
+                let far = exact::far_root(self, ray, prepared.square, crossing.far().t);
+                match (near, far) {
+                    (Some(near), Some(far)) => Roots::Two(near, far),
+                    _ => exact::roots(self, ray),
+                }
+            }
+            Line::Unsure => exact::roots(self, ray),
         }
     }
 
-    /// Returns on which side of the surface a point lies.
+    /// Returns on which side of the surface a point lies, exactly. A point that is not finite lies outside.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rt_geom::{Side, Sphere};
+    ///
+    /// let sphere = Sphere::new(DVec3::ZERO, 3.0).unwrap();
+    /// assert_eq!(sphere.side(DVec3::new(1.0, 2.0, 2.0)), Side::On);
+    /// assert_eq!(sphere.side(DVec3::new(1.0, 2.0, 2f64.next_up())), Side::Outside);
+    /// ```
     pub fn side(&self, point: DVec3) -> Side {
-        let distance = (point - self.center).length();
-        if distance < self.radius {
-            Side::Inside
-        } else if distance == self.radius {
-            Side::On
-        } else {
+        let w = point - self.center;
+        let (square, radius_square) = (w.length_squared(), self.radius * self.radius);
+        let excess = square - radius_square;
+        let error = 7.0 * U * (square + radius_square) + UNDERFLOW_T;
+        if excess > error {
             Side::Outside
+        } else if excess < -error {
+            Side::Inside
+        } else {
+            exact::side(self, point)
         }
     }
 
-    /// Returns the outward unit normal at a point of the surface.
+    /// Returns the outward unit normal at a point of the surface: `(point - center) / |point - center|`.
+    ///
+    /// Within `4.1 * 2^-53` of the exact unit vector through the point given, in Euclidean length, for any scale (proved);
+    /// a point that is off the surface by `e` turns it by `e / radius` more. At the center itself, so for
+    /// radius 0, there is no normal: the answer is NaN.
     pub fn normal(&self, point: DVec3) -> DVec3 {
-        (point - self.center).normalize()
+        let w = point - self.center;
+        let w = if w.is_finite() { w } else { 0.5 * point - 0.5 * self.center };
+        let largest = max_abs(w);
+        if largest == 0.0 {
+            return DVec3::NAN;
+        }
+        // Scaled by a power of two, so that no square over- or underflows.
+        let scaled = w * power_of_two_near_inverse(largest);
+        scaled / scaled.length()
     }
 
     /// Returns bounds of the closest hit's `t`, or `None` if nothing in the range is hit or the hit surely lies
     /// beyond `limit`.
     #[inline]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let t = self.closest(&prepared.ray, prepared.within.clone())?;
+        match self.line(prepared) {
+            Line::Misses => None,
+            Line::Crosses(crossing) => {
+                let mut root = crossing.near();
+                if root.high() < prepared.start {
+                    root = crossing.far();
+                }
+                let (low, high) = (root.low(), root.high());
+                if low > limit || low > prepared.end || high < prepared.start {
+                    None
+                } else if low > prepared.start && high < prepared.end {
+                    Some(Candidate { low, high })
+                } else {
+                    self.exact_candidate(prepared, limit)
+                }
+            }
+            Line::Unsure => self.exact_candidate(prepared, limit),
+        }
+    }
+
+    #[cold]
+    fn exact_candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+        let t = exact::closest(self, &prepared.ray, prepared.within())?;
         (t <= limit).then_some(Candidate { low: t, high: t })
     }
+
+    /// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.
+    ///
+    /// No test of the inputs' exponents is needed but the one that prepared the ray: where something overflows, the
+    /// error bound is infinite or NaN and nothing is certain.
+    #[inline(always)]
+    fn line(&self, prepared: &PreparedRay) -> Line {
+        let d = prepared.ray.direction();
+        let w = prepared.ray.origin() - self.center;
+        let x = w.cross(d);
+        let x_square = x.length_squared();
+        let radius_square = self.radius * self.radius;
+        let reach_square = prepared.square * radius_square;
+        let delta = reach_square - x_square;
+        // Bounds every |w_j d_k| + |w_k d_j|.
+        let product = 2.0 * prepared.reach * max_abs(w);
+        let permanent = product * ((x.x.abs() + x.y.abs() + x.z.abs()) + 8.0 * U * product);
+        let error = 7.0 * U * ((reach_square + x_square) + permanent) + UNDERFLOW;
+        if delta < -error {
+            return Line::Misses;
+        }
+        // Sixteen times the bound, so that the square root has some bits too.
+        if delta > 16.0 * error {
+            let b = w.dot(d);
+            let root = delta.sqrt();
+            let q = b.abs() + root;
+            let w_square = w.length_squared();
+            return Line::Crosses(Crossing {
+                b,
+                q,
+                q_error: 7.0 * U * product + 2.0 * U * q + error / root,
+                c: w_square - radius_square,
+                c_error: 7.0 * U * (w_square + radius_square) + UNDERFLOW,
+                inverse_a: prepared.inverse_square,
+            });
+        }
+        Line::Unsure
+    }
+}
+
+/// What the filter says about a line and a sphere.
+enum Line {
+    Misses,
+    Crosses(Crossing),
+    Unsure,
+}
+
+/// The coefficients of `a t² + 2 b t + c`, with bounds of their errors, for a line that surely crosses the surface twice.
+struct Crossing {
+    b: f64,
+    /// `|b| + sqrt(Delta)`, within `q_error`, which is less than a third of it.
+    q: f64,
+    q_error: f64,
+    c: f64,
+    c_error: f64,
+    inverse_a: f64,
+}
+
+/// A root and a bound of its error.
+struct Approximate {
+    t: f64,
+    error: f64,
+}
+
+impl Approximate {
+    #[inline(always)]
+    fn low(&self) -> f64 {
+        self.t - self.error
+    }
+
+    #[inline(always)]
+    fn high(&self) -> f64 {
+        self.t + self.error
+    }
+}
+
+impl Crossing {
+    /// The root where the line enters.
+    #[inline(always)]
+    fn near(&self) -> Approximate {
+        if self.b < 0.0 { self.c_over_q(1.0) } else { self.q_over_a(-1.0) }
+    }
+
+    /// The root where it leaves.
+    #[inline(always)]
+    fn far(&self) -> Approximate {
+        if self.b < 0.0 { self.q_over_a(1.0) } else { self.c_over_q(-1.0) }
+    }
+
+    #[inline(always)]
+    fn c_over_q(&self, sign: f64) -> Approximate {
+        let inverse_q = 1.0 / self.q;
+        let t = sign * (self.c * inverse_q);
+        let error =
+            1.5 * (t.abs() * self.q_error + self.c_error) * inverse_q + 4.0 * U * t.abs() + UNDERFLOW_T;
+        Approximate { t, error }
+    }
+
+    #[inline(always)]
+    fn q_over_a(&self, sign: f64) -> Approximate {
+        let t = sign * (self.q * self.inverse_a);
+        let error = 1.1 * self.q_error * self.inverse_a + 8.0 * U * t.abs() + UNDERFLOW_T;
+        Approximate { t, error }
+    }
+}
+
+/// A power of two by which a positive number becomes about 1; at most 2^1022.
+fn power_of_two_near_inverse(x: f64) -> f64 {
+    let exponent = (x.to_bits() >> 52).min(2045);
+    f64::from_bits((2046 - exponent).min(2045) << 52)
 }

@@ -111,7 +111,7 @@ impl Triangle {
     /// `limit`.
     #[inline]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let t = self.closest(&prepared.ray, prepared.within.clone())?;
+        let t = self.closest(&prepared.ray, prepared.within())?;
         (t <= limit).then_some(Candidate { low: t, high: t })
     }
 

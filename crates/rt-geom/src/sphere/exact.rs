@@ -1,0 +1,225 @@
+//! The stages after the filter: compensated Newton step, double-double, integers.
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use glam::DVec3;
+use rt_math::Roots;
+use rt_math::exact::{DoubleDouble, Dyadic, round_if_certain, two_diff, two_prod, two_sum};
+use rt_math::fma_dispatch;
+
+use super::{Side, Sphere, U, UNDERFLOW, UNDERFLOW_T};
+use crate::Ray;
+use crate::ray::{holds, larger, max_abs};
+
+/// Up to here in magnitude the coordinates relative to the center must be for the stages in double-double: 2^400.
+const FARTHEST: f64 = f64::from_bits((1023 + 400) << 52);
+
+fma_dispatch! {
+    /// Returns the correctly rounded root where the line enters, from an approximation, or `None` if it takes more.
+    pub(super) fn near_root(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> = near_kernel;
+}
+
+fma_dispatch! {
+    /// Returns the correctly rounded root where the line leaves, from an approximation, or `None` if it takes more.
+    pub(super) fn far_root(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> = far_kernel;
+}
+
+#[inline(always)]
+fn near_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> {
+    newton::<FMA>(sphere, ray, a, t, -1.0)
+}
+
+#[inline(always)]
+fn far_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> {
+    newton::<FMA>(sphere, ray, a, t, 1.0)
+}
+
+/// One Newton step from `t` on `f(t) = |w + t d|² - r²`, with `f` good to about 100 bits, and the rounding test.
+///
+/// Nothing is assumed about how good `t` is: the step is accepted only if its size, the curvature `a` of `f` and the
+/// slope prove that a root lies where it leads. `slope` is the sign of `f'` there: -1 where the line enters, +1 where it
+/// leaves, so that the root is the one asked for. Section 5 of `docs/numerics.md` proves the bounds.
+#[inline(always)]
+fn newton<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, t: f64, slope: f64) -> Option<f64> {
+    let (o, c, d, r) = (ray.origin(), sphere.center, ray.direction(), sphere.radius);
+    // p = w + t d as high + low per component; `terms` bounds the two terms of each sum.
+    let component = |o: f64, c: f64, d: f64| {
+        let (w, w_low) = two_diff(o, c);
+        let (step, step_low) = two_prod::<FMA>(t, d);
+        let (high, error) = two_sum(w, step);
+        (high, error + (w_low + step_low), w.abs() + step.abs())
+    };
+    let (x, x_low, x_terms) = component(o.x, c.x, d.x);
+    let (y, y_low, y_terms) = component(o.y, c.y, d.y);
+    let (z, z_low, z_terms) = component(o.z, c.z, d.z);
+    let terms = larger(x_terms, larger(y_terms, z_terms));
+
+    let (xx, xx_low) = two_prod::<FMA>(x, x);
+    let (yy, yy_low) = two_prod::<FMA>(y, y);
+    let (zz, zz_low) = two_prod::<FMA>(z, z);
+    let (rr, rr_low) = two_prod::<FMA>(r, r);
+    // The two largest squares may be any; r² comes last, where everything but the residual cancels.
+    let (sum, e1) = two_sum(xx, yy);
+    let (sum, e2) = two_sum(sum, zz);
+    let (sum, e3) = two_sum(sum, -rr);
+    let crossed = x_low * (2.0 * x + x_low) + (y_low * (2.0 * y + y_low) + z_low * (2.0 * z + z_low));
+    let low = ((xx_low + yy_low) + (zz_low - rr_low)) + ((e1 + e2) + (e3 + crossed));
+    let f = sum + low;
+
+    let size = x.abs() + y.abs() + z.abs();
+    let f_error = 64.0 * U * U * ((xx + yy + zz + rr) + terms * (size + 4.0 * U * terms)) + UNDERFLOW;
+    let g = x * d.x + y * d.y + z * d.z;
+    let g_error = 8.0 * U * max_abs(d) * (size + terms) + UNDERFLOW;
+
+    let inverse_g = 1.0 / (slope * g);
+    let step = -0.5 * (slope * f) * inverse_g;
+    let slack = (0.6 * f_error + 1.2 * step.abs() * g_error) * inverse_g;
+    let longest = step.abs() + slack;
+    let curvature = 2.4 * a * longest * inverse_g;
+    let error = slack + (0.4 * curvature + 8.0 * U) * longest + UNDERFLOW_T;
+    // All of it false for NaN.
+    let proved = 8.0 * g_error <= slope * g && curvature <= 0.125 && terms + r <= FARTHEST;
+    if proved { round_if_certain(t, step, error) } else { None }
+}
+
+/// Returns the closest root in the range, whatever it takes.
+#[cold]
+#[inline(never)]
+pub(super) fn closest(sphere: &Sphere, ray: &Ray, within: Range<f64>) -> Option<f64> {
+    match roots(sphere, ray) {
+        Roots::One(t) if holds(&within, t) => Some(t),
+        Roots::Two(near, _) if holds(&within, near) => Some(near),
+        Roots::Two(_, far) if holds(&within, far) => Some(far),
+        _ => None,
+    }
+}
+
+/// Returns the roots, whatever it takes.
+#[cold]
+#[inline(never)]
+pub(super) fn roots(sphere: &Sphere, ray: &Ray) -> Roots {
+    double_double_roots(sphere, ray).unwrap_or_else(|| integer_roots(sphere, ray))
+}
+
+/// Returns on which side of the surface a point lies, whatever it takes.
+#[cold]
+#[inline(never)]
+pub(super) fn side(sphere: &Sphere, point: DVec3) -> Side {
+    if !point.is_finite() {
+        return Side::Outside;
+    }
+    let sign = double_double_side(sphere, point).unwrap_or_else(|| integer_side(sphere, point));
+    match sign {
+        Ordering::Less => Side::Inside,
+        Ordering::Equal => Side::On,
+        Ordering::Greater => Side::Outside,
+    }
+}
+
+/// The filter and the roots once more, in double-double; `None` if that is not certain either.
+fn double_double_roots(sphere: &Sphere, ray: &Ray) -> Option<Roots> {
+    let (o, c, d) = (ray.origin(), sphere.center, ray.direction());
+    let reach = max_abs(d);
+    let far = max_abs(o - c);
+    // The range for which the bounds are proved.
+    if !(far + sphere.radius <= FARTHEST && (1e-30..=1e30).contains(&reach)) {
+        return None;
+    }
+    let w = [Number::difference(o.x, c.x), Number::difference(o.y, c.y), Number::difference(o.z, c.z)];
+    let d = d.to_array().map(Number::new);
+    let x = [w[1] * d[2] - w[2] * d[1], w[2] * d[0] - w[0] * d[2], w[0] * d[1] - w[1] * d[0]];
+    let x_square = dot(x, x);
+    let a = dot(d, d);
+    let radius_square = Number::product(sphere.radius, sphere.radius);
+    let reach_square = a * radius_square;
+    let delta = reach_square - x_square;
+    let product = 2.0 * reach * far;
+    let x_size = x[0].high().abs() + x[1].high().abs() + x[2].high().abs();
+    let permanent = product * (x_size + 32.0 * U * U * product);
+    let error = 32.0 * U * U * ((reach_square.high() + x_square.high()) + permanent) + UNDERFLOW;
+    if delta.high() < -error {
+        return Some(Roots::None);
+    }
+    if delta.high() <= 16.0 * error {
+        return None;
+    }
+
+    let b = dot(w, d);
+    let root = delta.sqrt();
+    let q = if b.high() < 0.0 { root - b } else { root + b };
+    let q_error = 26.0 * U * U * product + 10.0 * U * U * q.high() + error / root.high();
+    let w_square = dot(w, w);
+    let c = w_square - radius_square;
+    let c_error = 22.0 * U * U * (w_square.high() + radius_square.high()) + UNDERFLOW;
+    let (small, large) = (c / q, q / a);
+    let small_size = small.high().abs();
+    let small_error =
+        1.5 * (small_size * q_error + c_error) / q.high() + 32.0 * U * U * small_size + UNDERFLOW_T;
+    let large_error = 1.1 * q_error / a.high() + 32.0 * U * U * large.high() + UNDERFLOW_T;
+    let small = round_if_certain(small.high(), small.low(), small_error)?;
+    let large = round_if_certain(large.high(), large.low(), large_error)?;
+    Some(if b.high() < 0.0 { Roots::Two(small, large) } else { Roots::Two(-large, -small) })
+}
+
+/// Compares the distance of a point from the center with the radius, in double-double.
+fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
+    if !(max_abs(point - sphere.center) + sphere.radius <= FARTHEST) {
+        return None;
+    }
+    let w = [
+        Number::difference(point.x, sphere.center.x),
+        Number::difference(point.y, sphere.center.y),
+        Number::difference(point.z, sphere.center.z),
+    ];
+    let (square, radius_square) = (dot(w, w), Number::product(sphere.radius, sphere.radius));
+    let excess = (square - radius_square).high();
+    let error = 32.0 * U * U * (square.high() + radius_square.high()) + UNDERFLOW;
+    (excess.abs() > error).then(|| excess.total_cmp(&0.0))
+}
+
+/// Cold stages need no FMA.
+type Number = DoubleDouble<false>;
+
+fn dot(v: [Number; 3], w: [Number; 3]) -> Number {
+    v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
+}
+
+/// Limbs for the roots. Coordinates relative to the center are multiples of 2^-1074 below 2^1025. `Delta`, of degree
+/// four, is a multiple of 2^-4296 below 2^4103: 134 limbs. To round a root takes `(2 (t + 2) - 2 b) / 64 + 2` limbs with
+/// `t = 3077` and `b = -3222`, that of twice a double times `d . d`.
+type RootInteger = Dyadic<200>;
+
+fn integer_roots(sphere: &Sphere, ray: &Ray) -> Roots {
+    let w = difference(ray.origin(), sphere.center);
+    let d = ray.direction().to_array().map(RootInteger::from_f64);
+    let r = RootInteger::from_f64(sphere.radius);
+    let a = integer_dot(&d, &d);
+    let minus_b = -integer_dot(&w, &d);
+    let cross = |j: usize, k: usize| (&w[j] * &d[k] - &w[k] * &d[j]).square();
+    let delta = &a * &r.square() - (cross(1, 2) + cross(2, 0) + cross(0, 1));
+    match delta.sign() {
+        Ordering::Less => Roots::None,
+        Ordering::Equal => Roots::One(RootInteger::quotient(&minus_b, &a)),
+        Ordering::Greater => {
+            let root = |minus| RootInteger::root(&minus_b, minus, &delta, &a);
+            Roots::Two(root(true), root(false))
+        }
+    }
+}
+
+/// Limbs for the side: of degree two, a multiple of 2^-2148 below 2^2053.
+type SideInteger = Dyadic<68>;
+
+fn integer_side(sphere: &Sphere, point: DVec3) -> Ordering {
+    let w = difference::<68>(point, sphere.center);
+    (integer_dot(&w, &w) - SideInteger::from_f64(sphere.radius).square()).sign()
+}
+
+fn difference<const LIMBS: usize>(p: DVec3, q: DVec3) -> [Dyadic<LIMBS>; 3] {
+    [0, 1, 2].map(|i| Dyadic::from_f64(p[i]) - Dyadic::from_f64(q[i]))
+}
+
+fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> Dyadic<LIMBS> {
+    &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
+}

@@ -1,0 +1,367 @@
+//! How often a line meets a sphere, whether a ray does in a range, and on which side a point lies are exact, and every `t`
+//! is correctly rounded, for every finite input.
+
+mod reference;
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use glam::DVec3;
+use reference::{
+    Exact, Rng, cases, cross, dot, exact, holds, is_correctly_rounded, minus, scale, scale_vector, vector,
+};
+use rt_geom::{Ray, Side, Sphere};
+use rt_math::Roots;
+
+/// `a t² + 2 b t + c`, exactly.
+struct Equation {
+    a: Exact,
+    b: Exact,
+    c: Exact,
+    delta: Exact,
+}
+
+impl Equation {
+    fn new(ray: &Ray, sphere: &Sphere) -> Self {
+        let (w, d) = (minus(&vector(ray.origin()), &vector(sphere.center())), vector(ray.direction()));
+        let r = exact(sphere.radius());
+        let a = dot(&d, &d);
+        let b = dot(&w, &d);
+        let c = &dot(&w, &w) - &(&r * &r);
+        let delta = &(&b * &b) - &(&a * &c);
+        // Lagrange's identity, so that a slip in one form is seen in the other
+        let x = cross(&w, &d);
+        assert_eq!(delta.cmp(&(&(&a * &(&r * &r)) - &dot(&x, &x))), Ordering::Equal);
+        Self { a, b, c, delta }
+    }
+
+    /// Compares the near root (the far one if `far`) with `x`.
+    fn compare(&self, far: bool, x: &Exact) -> Ordering {
+        let slope = &(&self.a * x) + &self.b;
+        let value = &(&(&(&self.a * x) + &(&self.b + &self.b)) * x) + &self.c;
+        match (far, slope.sign()) {
+            (false, Ordering::Greater) => Ordering::Less,
+            (false, _) => value.sign(),
+            (true, Ordering::Less) => Ordering::Greater,
+            (true, _) => value.sign().reverse(),
+        }
+    }
+}
+
+/// Checks everything about one line and one sphere; returns the number of roots.
+fn check(origin: DVec3, direction: DVec3, center: DVec3, radius: f64, rng: &mut Rng) -> usize {
+    let (Some(ray), Some(sphere)) = (Ray::new(origin, direction), Sphere::new(center, radius)) else {
+        return 0;
+    };
+    let equation = Equation::new(&ray, &sphere);
+    let roots = sphere.roots(&ray);
+    let context = || format!("{ray:?} {sphere:?} gives {roots:?}");
+    let list = match (roots, equation.delta.sign()) {
+        (Roots::None, Ordering::Less) => vec![],
+        (Roots::One(t), Ordering::Equal) => vec![t],
+        (Roots::Two(near, far), Ordering::Greater) => vec![near, far],
+        (_, sign) => panic!("wrong count, Delta is {sign:?}: {}", context()),
+    };
+    for (i, &t) in list.iter().enumerate() {
+        assert!(is_correctly_rounded(t, |x| equation.compare(i == 1, x)), "root {i}: {}", context());
+    }
+    // every kind of end that a root can meet
+    let some = if list.is_empty() { rng.uniform() } else { list[rng.bits() as usize % list.len()] };
+    let ends =
+        [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
+    let random = |rng: &mut Rng| ends[rng.bits() as usize % ends.len()];
+    let ranges =
+        [0.0..f64::INFINITY, f64::from_bits(1)..f64::INFINITY, random(rng)..random(rng), random(rng)..some];
+    for within in ranges {
+        let expected = list.iter().copied().find(|&t| holds(&within, t));
+        let found = sphere.closest(&ray, within.clone());
+        let same = expected.map(f64::to_bits) == found.map(f64::to_bits);
+        assert!(same, "expected {expected:?}, found {found:?} in {within:?}: {}", context());
+        assert_eq!(sphere.any(&ray, within.clone()), found.is_some(), "{within:?}: {}", context());
+    }
+    let side = match equation.c.sign() {
+        Ordering::Less => Side::Inside,
+        Ordering::Equal => Side::On,
+        Ordering::Greater => Side::Outside,
+    };
+    assert_eq!(sphere.side(origin), side, "{sphere:?} {origin:?}");
+    list.len()
+}
+
+/// Runs a class; returns how many cases had 0, 1 and 2 roots.
+fn run(seed: u64, mut case: impl FnMut(&mut Rng) -> (DVec3, DVec3, DVec3, f64)) -> [usize; 3] {
+    let mut rng = Rng::new(seed);
+    let mut counts = [0; 3];
+    for _ in 0..cases() {
+        let (origin, direction, center, radius) = case(&mut rng);
+        counts[check(origin, direction, center, radius, &mut rng)] += 1;
+    }
+    counts
+}
+
+/// Three vectors at right angles, each of length 3, with integer components, in a random arrangement.
+fn integer_frame(rng: &mut Rng) -> [DVec3; 3] {
+    let mut frame = [DVec3::new(1.0, 2.0, 2.0), DVec3::new(2.0, -2.0, 1.0), DVec3::new(2.0, 1.0, -2.0)];
+    let turn = rng.below(3) as usize;
+    frame.rotate_left(turn);
+    let turn = rng.below(3) as usize;
+    frame.map(|v| {
+        let v = [v.x, v.y, v.z];
+        DVec3::new(v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3])
+    })
+}
+
+fn distance_to_line(point: DVec3, origin: DVec3, direction: DVec3) -> f64 {
+    (point - origin).cross(direction).length() / direction.length()
+}
+
+#[test]
+fn benign() {
+    let counts = run(1, |rng| {
+        let (origin, center, radius) = (10.0 * rng.vector(), 10.0 * rng.vector(), 6.0 * rng.uniform().abs());
+        (origin, center + 1.5 * radius * rng.vector() - origin, center, radius)
+    });
+    assert!(counts[0] > 1000 && counts[2] > 1000, "{counts:?}");
+}
+
+#[test]
+fn tangent_exactly_and_within_a_few_ulps() {
+    let counts = run(2, |rng| {
+        let [p, e1, e2] = integer_frame(rng);
+        let size = f64::from(1 + rng.below(1000));
+        let direction = rng.small(50) * e1 + rng.small(50) * e2;
+        let center = rng.small_vector(1000);
+        let origin = center + size * p + rng.small(1000) * direction;
+        let (mut origin, mut radius, mut center) = (origin, 3.0 * size, center);
+        match rng.below(6) {
+            0 => radius = rng.nudge(radius, 1),
+            1 => origin = rng.nudge_vector(origin, 1),
+            2 => center.x = rng.nudge(center.x, 2),
+            _ => {}
+        }
+        let k = rng.below(60) - 30;
+        (scale_vector(origin, k), direction, scale_vector(center, k), scale(radius, k))
+    });
+    assert!(counts.iter().all(|&n| n > 1000), "{counts:?}");
+}
+
+#[test]
+fn nearly_tangent() {
+    let counts = run(3, |rng| {
+        let size = [1, 20, 60, 200][rng.below(4) as usize];
+        let origin = rng.vector_with_exponent(0..size);
+        let (direction, center) = (rng.vector(), rng.vector());
+        let radius = distance_to_line(center, origin, direction);
+        (origin, direction, center, rng.nudge(radius, 3).abs())
+    });
+    assert!(counts[0] > 1000 && counts[2] > 1000, "{counts:?}");
+}
+
+#[test]
+fn origin_on_the_surface_or_just_off() {
+    run(4, |rng| {
+        let (direction, center) = (rng.vector(), rng.small_vector(100));
+        if rng.bits() & 1 == 0 {
+            let size = f64::from(1 + rng.below(1000));
+            let p = size * integer_frame(rng)[0];
+            let origin = center + p;
+            (
+                if rng.bits() & 1 == 0 { origin } else { rng.nudge_vector(origin, 1) },
+                direction,
+                center,
+                3.0 * size,
+            )
+        } else {
+            let origin = center + rng.vector_with_exponent(-20..20);
+            let radius = rng.nudge((origin - center).length(), 2);
+            (origin, direction, center, radius)
+        }
+    });
+}
+
+#[test]
+fn small_and_far() {
+    let counts = run(5, |rng| {
+        let center = rng.vector() * 10f64.powi(rng.below(16));
+        let radius = rng.uniform().abs();
+        let origin = rng.vector();
+        let offset = 1.5 * radius * rng.vector();
+        (origin, (center + offset - origin) * rng.with_exponent(-40..40), center, radius)
+    });
+    assert!(counts[0] > 1000 && counts[2] > 1000, "{counts:?}");
+}
+
+#[test]
+fn huge_ground() {
+    let counts = run(6, |rng| {
+        let radius = 10f64.powi(3 + rng.below(13)) * (1.0 + rng.uniform().abs());
+        let origin = rng.vector();
+        let center = DVec3::new(rng.uniform(), -radius + rng.uniform(), rng.uniform());
+        let mut direction = rng.vector();
+        direction.y *= 10f64.powi(-rng.below(8));
+        (origin, direction, center, radius)
+    });
+    assert!(counts[2] > 1000, "{counts:?}");
+}
+
+#[test]
+fn radius_zero() {
+    let counts = run(7, |rng| {
+        let (origin, direction) = (rng.small_vector(1000), rng.small_vector(20));
+        let center = origin + rng.small(1000) * direction;
+        let center = if rng.bits() & 3 == 0 { rng.nudge_vector(center, 1) } else { center };
+        (origin, direction, center, if rng.bits() & 7 == 0 { f64::from_bits(1) } else { 0.0 })
+    });
+    assert!(counts[1] > 1000, "{counts:?}");
+}
+
+#[test]
+fn every_exponent() {
+    run(8, |rng| (rng.finite_vector(), rng.finite_vector(), rng.finite_vector(), rng.finite().abs()));
+    let counts = run(9, |rng| {
+        let e = rng.below(2000) - 1000;
+        let range = e - 3..e + 3;
+        let f = rng.below(2000) - 1000;
+        (
+            rng.vector_with_exponent(range.clone()),
+            rng.vector_with_exponent(f - 2..f + 2),
+            rng.vector_with_exponent(range.clone()),
+            rng.with_exponent(range).abs(),
+        )
+    });
+    assert!(counts[0] > 1000 && counts[2] > 1000, "{counts:?}");
+}
+
+#[test]
+fn scenes_scaled_to_the_ends_of_the_range() {
+    let counts = run(10, |rng| {
+        let (k, l) = (rng.below(2090) - 1070, rng.below(2090) - 1070);
+        let radius = rng.uniform().abs();
+        let center = 3.0 * rng.vector();
+        let origin = 3.0 * rng.vector();
+        let direction = center + 1.5 * radius * rng.vector() - origin;
+        (scale_vector(origin, k), scale_vector(direction, l), scale_vector(center, k), scale(radius, k))
+    });
+    assert!(counts[0] > 1000 && counts[2] > 1000, "{counts:?}");
+}
+
+#[test]
+fn roots_halfway_between_doubles() {
+    let counts = run(11, |rng| {
+        // along an axis the roots are center -+ radius, of up to 60 bits or so
+        let e = rng.below(40) - 20;
+        let center = rng.with_exponent(e..e + 2);
+        let radius = rng.with_exponent(e - 8..e + 2).abs();
+        let axis = rng.below(3) as usize;
+        let (mut c, mut d) = (DVec3::ZERO, DVec3::ZERO);
+        (c[axis], d[axis]) = (center, [1.0, -2.0, 0.5][rng.below(3) as usize]);
+        (DVec3::ZERO, d, c, radius)
+    });
+    assert_eq!(counts[1], 0);
+}
+
+#[test]
+fn from_inside_or_with_the_sphere_behind() {
+    run(12, |rng| {
+        let center = rng.vector();
+        let radius = 0.2 + rng.uniform().abs();
+        let origin = center + radius * 10f64.powi(rng.below(3) - 1) * rng.vector();
+        (origin, (origin - center) * rng.with_exponent(-3..3) + 0.3 * rng.vector(), center, radius)
+    });
+}
+
+/// A far sensor on a small sphere: single-precision tracers show rings of noise and a wrong silhouette.
+#[test]
+fn the_silhouette_of_a_far_small_sphere_is_the_exact_one() {
+    for distance in [1e3, 1e8] {
+        let sphere = Sphere::new(DVec3::ZERO, 1.0).unwrap();
+        let (size, mut hits) = (160, 0);
+        for i in 0..size {
+            for j in 0..size {
+                let at = |k: i32| (f64::from(k) + 0.5) / f64::from(size) * 2.2 - 1.1;
+                let origin = DVec3::new(0.0, 0.0, distance);
+                let ray = Ray::new(origin, DVec3::new(at(i), at(j), 0.0) - origin).unwrap();
+                let expected = Equation::new(&ray, &sphere).delta.sign() != Ordering::Less;
+                assert_eq!(sphere.any(&ray, 0.0..f64::INFINITY), expected, "{ray:?}");
+                hits += i32::from(expected);
+            }
+        }
+        let area = f64::from(hits) / f64::from(size * size) * 2.2 * 2.2;
+        assert!((area - std::f64::consts::PI).abs() < 0.02, "the disc has area {area}");
+    }
+}
+
+/// A unit sphere seen from 100 units: no hit is on its back.
+#[test]
+fn a_sphere_is_never_hit_on_its_back_first() {
+    let mut rng = Rng::new(13);
+    let mut hits = 0;
+    for _ in 0..cases() {
+        let origin = 100.0 * rng.vector().normalize();
+        let sphere = Sphere::new(0.01 * rng.vector(), 1.0).unwrap();
+        let ray = Ray::new(origin, 0.9 * rng.vector() - origin).unwrap();
+        if let Some(t) = sphere.closest(&ray, 0.0..f64::INFINITY) {
+            hits += 1;
+            let facing = (ray.at(t) - sphere.center()).dot(ray.direction());
+            assert!(facing < 0.0 || matches!(sphere.roots(&ray), Roots::One(_)), "{ray:?} {sphere:?}");
+        }
+    }
+    assert!(hits > cases() / 4, "{hits}");
+}
+
+/// A grazing ray that an interval test with "maybe below zero means miss" drops.
+#[test]
+fn a_grazing_hit_does_not_vanish() {
+    let sphere = Sphere::new(DVec3::ZERO, 1.0).unwrap();
+    for (height, count) in [(1f64.next_down(), 2), (1.0, 1), (1f64.next_up(), 0)] {
+        let ray = Ray::new(DVec3::new(-1e6, height, 0.0), DVec3::X).unwrap();
+        let found = match sphere.roots(&ray) {
+            Roots::None => 0,
+            Roots::One(_) => 1,
+            _ => 2,
+        };
+        assert_eq!(found, count, "at height {height}");
+    }
+}
+
+#[test]
+fn a_ray_that_starts_on_the_surface_has_the_root_zero_and_leaves() {
+    let mut rng = Rng::new(14);
+    let behind = |range: Range<f64>, sphere: &Sphere, ray: &Ray| sphere.closest(ray, range);
+    for _ in 0..1000 {
+        let p = integer_frame(&mut rng)[0];
+        let sphere = Sphere::new(DVec3::ZERO, 3.0).unwrap();
+        let outward = p + 0.5 * rng.vector();
+        let ray = Ray::new(p, outward).unwrap();
+        assert_eq!(behind(0.0..f64::INFINITY, &sphere, &ray).map(f64::to_bits), Some(0), "{ray:?}");
+        assert_eq!(behind(f64::from_bits(1)..f64::INFINITY, &sphere, &ray), None, "{ray:?}");
+    }
+}
+
+#[test]
+fn normals_and_hit_points_keep_their_bounds() {
+    const U: f64 = f64::EPSILON / 2.0;
+    let mut rng = Rng::new(15);
+    for _ in 0..cases() {
+        let k = rng.below(2088) - 1068;
+        let radius = scale(0.5 + rng.uniform().abs(), k);
+        let center = scale_vector(rng.vector(), k);
+        let sphere = Sphere::new(center, radius).unwrap();
+        let point = scale_vector(2.0 * rng.vector(), k);
+        let normal = sphere.normal(point);
+        // |n| within the bound of 1, and n parallel to w: |n x w|² <= (bound |w|)²
+        let (n, w) = (vector(normal), minus(&vector(point), &vector(center)));
+        let bound = exact(4.1 * U);
+        let x = cross(&n, &w);
+        let limit = &(&bound * &bound) * &dot(&w, &w);
+        assert!(dot(&x, &x).cmp(&limit) != Ordering::Greater, "{sphere:?} {point:?} gives {normal:?}");
+        let excess = &dot(&n, &n) - &exact(1.0);
+        let limit = exact(8.3 * U);
+        assert!(
+            excess.cmp(&limit) == Ordering::Less && (-&excess).cmp(&limit) == Ordering::Less,
+            "{normal:?}"
+        );
+    }
+    let point = Sphere::new(DVec3::ONE, 0.0).unwrap();
+    assert!(point.normal(DVec3::ONE).is_nan());
+}
