@@ -7,7 +7,6 @@
 mod read;
 mod write;
 
-pub use crate::Limits;
 pub(crate) use read::read_known;
-pub use read::{Field, PpmError, read, read_bytes};
-pub use write::{Encoding, write};
+pub use read::{Field, PpmError, read, read_bytes, read_with_comments};
+pub use write::{Encoding, write, write_with_comment};

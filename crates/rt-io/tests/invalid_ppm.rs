@@ -223,3 +223,27 @@ fn a_reader_that_fails_is_an_error_with_its_byte() {
         assert_eq!(std::error::Error::source(&error).unwrap().to_string(), "the cable is out");
     }
 }
+
+#[test]
+fn comments_of_the_header_are_given_back() {
+    let read = |bytes: &[u8]| ppm::read_with_comments(Drip(bytes), &Limits::default()).unwrap().1;
+    assert_eq!(read(b"P6 1 1 255\n# c"), [""; 0]);
+    assert_eq!(read(b"P3 1#yes\n1 255 # no\n1 2#no\n3"), ["yes"]);
+    assert_eq!(read(b"P6#a\n # b \r1#c#d\n1#\n255# \xff\nabc"), ["a", "b ", "c#d", "", "\u{fffd}"]);
+    // A long one is cut and the picture is read.
+    let bytes = [b"P6#", &[b'x'; 100_000][..], b"\n# left out\n1 1 255 abc"].concat();
+    let (pixmap, comments) = ppm::read_with_comments(&bytes[..], &Limits::default()).unwrap();
+    assert_eq!(pixmap.to_samples(), [97, 98, 99]);
+    assert_eq!(comments, ["x".repeat(65535)]);
+}
+
+#[test]
+fn a_comment_of_two_lines_is_not_written() {
+    let pixmap = Pixmap::new(1, 1, 255, vec![1, 2, 3]).unwrap();
+    for comment in ["two\nlines", "two\rlines"] {
+        let mut bytes = Vec::new();
+        let error = ppm::write_with_comment(&pixmap, ppm::Encoding::Raw, comment, &mut bytes).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+        assert!(bytes.is_empty());
+    }
+}

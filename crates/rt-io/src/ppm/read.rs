@@ -183,6 +183,22 @@ pub fn read(reader: impl Read, limits: &Limits) -> Result<Pixmap, PpmError> {
     read_known(reader, None, limits)
 }
 
+/// Reads as [`read`] does, and gives the comments of the header too, each without its `#` and one blank behind that.
+///
+/// Bytes that are no UTF-8 are replaced; of more than 64 KiB of comments the rest is left out.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with_comments(reader: impl Read, limits: &Limits) -> Result<(Pixmap, Vec<String>), PpmError> {
+    let mut source = Source::new(reader, None);
+    let (pixmap, comments) = source.pixmap(limits)?;
+    let comments = comments.split(|byte| matches!(byte, b'\n' | b'\r')).filter_map(|line| {
+        let line = line.strip_prefix(b"#")?;
+        Some(String::from_utf8_lossy(line.strip_prefix(b" ").unwrap_or(line)).into_owned())
+    });
+    Ok((pixmap, comments.collect()))
+}
+
 /// Reads the picture at the start of `bytes`.
 ///
 /// # Errors
@@ -207,24 +223,14 @@ pub(crate) fn read_known(
     length: Option<u64>,
     limits: &Limits,
 ) -> Result<Pixmap, PpmError> {
-    let mut source = Source { reader, buffer: vec![0; BUFFER], start: 0, end: 0, base: 0, length };
-    let header = source.header(limits)?;
-    let samples = if header.maxval <= 255 {
-        let convert = |value: u16| (value & 0xff) as u8;
-        let samples = if header.plain { source.plain(&header, convert)? } else { source.bytes(&header)? };
-        Samples::Eight(if header.channels == 1 { grey_to_rgb(&samples, &header)? } else { samples })
-    } else {
-        let samples =
-            if header.plain { source.plain(&header, |value| value)? } else { source.pairs(&header)? };
-        Samples::Sixteen(if header.channels == 1 { grey_to_rgb(&samples, &header)? } else { samples })
-    };
-    let size = |number| usize::try_from(number).map_err(|_| header.out_of_memory());
-    let pixmap = Pixmap::from_checked(size(header.width)?, size(header.height)?, header.maxval, samples);
-    Ok(pixmap.expect("the raster holds as many samples as the header promises"))
+    Ok(Source::new(reader, length).pixmap(limits)?.0)
 }
 
 /// Bytes asked for at a time; small enough to stay in the second-level cache.
 const BUFFER: usize = 1 << 16;
+
+/// Bytes of comments that are kept.
+const MOST_COMMENTS: usize = 1 << 16;
 
 /// Bytes by which a raster of unknown length grows: its old and its new place together stay within 64 MiB of it.
 const GROWTH: usize = 1 << 24;
@@ -279,9 +285,33 @@ struct Source<R> {
     base: u64,
     /// Length of the file, if known.
     length: Option<u64>,
+    /// Comments, each from its `#` to the byte that ends it.
+    comments: Vec<u8>,
 }
 
 impl<R: Read> Source<R> {
+    fn new(reader: R, length: Option<u64>) -> Self {
+        Self { reader, buffer: vec![0; BUFFER], start: 0, end: 0, base: 0, length, comments: Vec::new() }
+    }
+
+    /// The picture, and the comments of its header.
+    fn pixmap(&mut self, limits: &Limits) -> Result<(Pixmap, Vec<u8>), PpmError> {
+        let header = self.header(limits)?;
+        let comments = std::mem::take(&mut self.comments);
+        let samples = if header.maxval <= 255 {
+            let convert = |value: u16| (value & 0xff) as u8;
+            let samples = if header.plain { self.plain(&header, convert)? } else { self.bytes(&header)? };
+            Samples::Eight(if header.channels == 1 { grey_to_rgb(&samples, &header)? } else { samples })
+        } else {
+            let samples =
+                if header.plain { self.plain(&header, |value| value)? } else { self.pairs(&header)? };
+            Samples::Sixteen(if header.channels == 1 { grey_to_rgb(&samples, &header)? } else { samples })
+        };
+        let size = |number| usize::try_from(number).map_err(|_| header.out_of_memory());
+        let pixmap = Pixmap::from_checked(size(header.width)?, size(header.height)?, header.maxval, samples);
+        Ok((pixmap.expect("the raster holds as many samples as the header promises"), comments))
+    }
+
     fn offset(&self) -> u64 {
         self.base + self.start as u64
     }
@@ -419,12 +449,12 @@ impl<R: Read> Source<R> {
     fn skip_comment(&mut self) -> Result<(), PpmError> {
         loop {
             let window = &self.buffer[self.start..self.end];
-            if let Some(length) = window.iter().position(|next| matches!(next, b'\n' | b'\r')) {
-                self.start += length + 1;
-                return Ok(());
-            }
-            self.start = self.end;
-            if !self.fill()? {
+            let end = window.iter().position(|next| matches!(next, b'\n' | b'\r'));
+            let length = end.map_or(window.len(), |end| end + 1);
+            let room = MOST_COMMENTS - self.comments.len();
+            self.comments.extend_from_slice(&window[..length.min(room)]);
+            self.start += length;
+            if end.is_some() || !self.fill()? {
                 return Ok(());
             }
         }

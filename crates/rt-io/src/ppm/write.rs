@@ -26,11 +26,48 @@ pub enum Encoding {
 /// assert_eq!(bytes, b"P3\n1 1\n255\n1 2 30 \n");
 /// ```
 pub fn write(pixmap: &Pixmap, encoding: Encoding, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
+    write_lines(pixmap, encoding, "", out)
+}
+
+/// Writes the picture as [`write()`] does, with a second line that holds `comment`.
+///
+/// # Errors
+/// Whatever `out` reports, and [`io::ErrorKind::InvalidInput`] if the comment holds a line end.
+///
+/// ```
+/// use rt_io::{Limits, Pixmap, ppm};
+/// let pixmap = Pixmap::new(1, 1, 255, vec![1, 2, 30]).unwrap();
+/// let mut bytes = Vec::new();
+/// ppm::write_with_comment(&pixmap, ppm::Encoding::Plain, "rows 0..1 of 2", &mut bytes).unwrap();
+/// assert_eq!(bytes, b"P3\n# rows 0..1 of 2\n1 1\n255\n1 2 30 \n");
+///
+/// let (found, comments) = ppm::read_with_comments(&bytes[..], &Limits::default()).unwrap();
+/// assert_eq!((found, comments), (pixmap, vec!["rows 0..1 of 2".to_string()]));
+/// ```
+pub fn write_with_comment(
+    pixmap: &Pixmap,
+    encoding: Encoding,
+    comment: &str,
+    out: &mut (impl Write + ?Sized),
+) -> io::Result<()> {
+    if comment.contains(['\n', '\r']) {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "a comment of a PPM is one line"));
+    }
+    write_lines(pixmap, encoding, &format!("# {comment}\n"), out)
+}
+
+/// Writes the picture with more lines, if any, behind the first.
+fn write_lines(
+    pixmap: &Pixmap,
+    encoding: Encoding,
+    lines: &str,
+    out: &mut (impl Write + ?Sized),
+) -> io::Result<()> {
     let magic = match encoding {
         Encoding::Raw => "P6",
         Encoding::Plain => "P3",
     };
-    write!(out, "{magic}\n{} {}\n{}\n", pixmap.width(), pixmap.height(), pixmap.maxval())?;
+    write!(out, "{magic}\n{lines}{} {}\n{}\n", pixmap.width(), pixmap.height(), pixmap.maxval())?;
     match (encoding, pixmap.raw()) {
         (Encoding::Raw, Samples::Eight(samples)) => out.write_all(samples),
         (Encoding::Raw, Samples::Sixteen(samples)) => write_pairs(samples, out),
