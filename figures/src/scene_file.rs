@@ -5,15 +5,17 @@
 //! is wrong ends it, told as `file:line:column: message`.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::fs::File;
 use std::io::Read;
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::path::Path;
 
 use glam::DVec3;
 use rt_geom::{Sphere, Triangle};
 use rt_shade::{Material, PointLight, Texture};
-use serde::Deserialize;
+use serde::de::{Deserialize, Deserializer, Error as _, SeqAccess, Visitor};
 use toml::Spanned;
 
 use crate::camera::Camera;
@@ -77,24 +79,24 @@ enum Problem {
 
 // The tables of the format, one to one.
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SceneTable {
     #[serde(default)]
     camera: Option<Spanned<CameraTable>>,
     #[serde(default)]
     background: Option<Vector>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     light: Vec<LightTable>,
     #[serde(default)]
     material: BTreeMap<String, Spanned<MaterialTable>>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     sphere: Vec<SphereTable>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     triangle: Vec<Spanned<TriangleTable>>,
 }
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CameraTable {
     eye: Option<Vector>,
@@ -105,14 +107,14 @@ struct CameraTable {
     fit: bool,
 }
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LightTable {
     position: Vector,
     color: Option<Vector>,
 }
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MaterialTable {
     color: Option<Vector>,
@@ -125,7 +127,7 @@ struct MaterialTable {
     shininess: Option<Number>,
 }
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SphereTable {
     center: Vector,
@@ -133,18 +135,97 @@ struct SphereTable {
     material: Spanned<String>,
 }
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TriangleTable {
     a: Vector,
     b: Vector,
     c: Vector,
     material: Option<Spanned<String>>,
-    colors: Option<Spanned<[Vector; 3]>>,
+    colors: Option<Spanned<Triple<Vector>>>,
 }
 
-type Number = Spanned<f64>;
-type Vector = Spanned<[f64; 3]>;
+type Number = Spanned<Real>;
+type Vector = Spanned<Triple<Real>>;
+
+/// A number, written as an integer or a float; not checked yet.
+#[derive(Clone, Copy)]
+struct Real(f64);
+
+impl<'de> Deserialize<'de> for Real {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct AnyNumber;
+        impl Visitor<'_> for AnyNumber {
+            type Value = Real;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Real, E> {
+                Ok(Real(value))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Real, E> {
+                Ok(Real(value as f64)) // rounded to the nearest, as a float with these digits would be
+            }
+        }
+        deserializer.deserialize_any(AnyNumber)
+    }
+}
+
+/// An array of exactly three values; what serde derives would pass over a fourth.
+struct Triple<T>([T; 3]);
+
+impl Triple<Real> {
+    fn vector(&self) -> DVec3 {
+        DVec3::from_array(self.0.each_ref().map(|number| number.0))
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Triple<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Three<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Three<T> {
+            type Value = Triple<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an array of three")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<Triple<T>, A::Error> {
+                let mut found = Vec::new();
+                while let Some(value) = values.next_element()? {
+                    found.push(value);
+                }
+                let length = found.len();
+                found.try_into().map(Triple).map_err(|_| A::Error::invalid_length(length, &self))
+            }
+        }
+        deserializer.deserialize_any(Three(PhantomData))
+    }
+}
+
+/// Reads an array of tables, and says how to write one where there is something else.
+fn tables<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    struct Tables<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for Tables<T> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("an array of tables, such as [[sphere]]")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<Vec<T>, A::Error> {
+            let mut found = Vec::new();
+            while let Some(value) = values.next_element()? {
+                found.push(value);
+            }
+            Ok(found)
+        }
+    }
+    deserializer.deserialize_any(Tables(PhantomData))
+}
 
 /// What a material is unless its table says otherwise; `docs/scene-format.md` states it.
 pub const DEFAULT_MATERIAL: Material =
@@ -247,7 +328,7 @@ impl Checker<'_> {
         let eye = point("eye", eye, DVec3::ZERO)?;
         let look_at = point("look_at", look_at, eye + DVec3::NEG_Z)?;
         let up = point("up", up, DVec3::Y)?;
-        let degrees = fov.as_ref().map_or(90.0, |fov| *fov.get_ref());
+        let degrees = fov.as_ref().map_or(90.0, |fov| fov.get_ref().0);
         let camera = Camera::new(eye, look_at, up, degrees).map_err(|error| {
             let place = fov.as_ref().filter(|_| error == crate::camera::CameraError::FieldOfView);
             self.refuse(place.map_or(table.span(), Spanned::span), Problem::Camera(error))
@@ -334,7 +415,7 @@ impl Checker<'_> {
             (None, None, _) => return Err(self.refuse(table.span(), Problem::BareTriangle)),
         };
         let colors = colors.as_ref().map(|colors| {
-            let [a, b, c] = colors.get_ref();
+            let Triple([a, b, c]) = colors.get_ref();
             Ok([self.color("colors", a)?, self.color("colors", b)?, self.color("colors", c)?])
         });
         scene.triangles.push(triangle);
@@ -369,7 +450,7 @@ impl Checker<'_> {
     }
 
     fn not_negative(&self, name: &'static str, value: &Number) -> Result<f64, SceneError> {
-        let found = *value.get_ref();
+        let Real(found) = *value.get_ref();
         if !found.is_finite() {
             return Err(self.refuse(value.span(), Problem::NotFinite { name, found: found.to_string() }));
         }
@@ -380,7 +461,7 @@ impl Checker<'_> {
     }
 
     fn point(&self, name: &'static str, value: &Vector) -> Result<DVec3, SceneError> {
-        let found = DVec3::from_array(*value.get_ref());
+        let found = value.get_ref().vector();
         if !found.is_finite() {
             return Err(self.refuse(value.span(), Problem::NotFinite { name, found: found.to_string() }));
         }
@@ -388,7 +469,7 @@ impl Checker<'_> {
     }
 
     fn color(&self, name: &'static str, value: &Vector) -> Result<DVec3, SceneError> {
-        let found = DVec3::from_array(*value.get_ref());
+        let found = value.get_ref().vector();
         // Written so that NaN fails it.
         if !found.to_array().iter().all(|channel| (0.0..=1.0).contains(channel)) {
             return Err(self.refuse(value.span(), Problem::NoColor { name, found: found.to_string() }));
