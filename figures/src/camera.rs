@@ -69,8 +69,7 @@ impl Camera {
         if !(fov > 0.0 && fov < 180.0) {
             return Err(CameraError::FieldOfView);
         }
-        // tan(fov / 2) in half turns: exactly 1 for 90 degrees, and the same bits on every platform.
-        let half_height = pxfm::f_tanpi(fov / 360.0);
+        let half_height = tangent_of_half(fov);
         Ok(Self { eye, forward, right, up: right.cross(forward), half_height, fit: false })
     }
 
@@ -107,6 +106,23 @@ impl Camera {
     pub fn axes(&self) -> [DVec3; 3] {
         [self.right, self.up, self.forward]
     }
+}
+
+/// Returns the tangent of half of an angle in degrees, more than 0 and less than 180; exactly 1 for 90.
+///
+/// J. H. Lambert's continued fraction, `tan x = x / (1 - x² / (3 - x² / (5 - ...)))`: unlike the system's library it has
+/// the same bits on every platform. Eleven of its terms leave an error below 1e-16 up to 45 degrees; with rounding it is
+/// at most 4 ulp (tested).
+fn tangent_of_half(degrees: f64) -> f64 {
+    if degrees == 90.0 {
+        return 1.0;
+    }
+    if degrees > 90.0 {
+        return 1.0 / tangent_of_half(180.0 - degrees);
+    }
+    let x = degrees * (std::f64::consts::PI / 360.0);
+    let below = [21.0, 19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
+    x / below.into_iter().fold(f64::INFINITY, |rest, odd| odd - x * x / rest)
 }
 
 /// The size of a picture, and how finely it is sampled.
@@ -189,6 +205,19 @@ mod tests {
             Camera::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.5, 9.0), DVec3::Y, 30.0).unwrap();
         let ray = View::new(camera, Size { width: 9, height: 5, samples: 1 }).ray(4, 2);
         assert_eq!(ray.direction(), camera.axes()[2]);
+    }
+
+    #[test]
+    fn the_tangent_is_within_four_ulp() {
+        for step in 1..18_000 {
+            let degrees = f64::from(step) / 100.0;
+            // The argument of the reference is rounded too; near 180 degrees that shows, so it is not compared there.
+            let expected = (degrees.min(180.0 - degrees).to_radians() / 2.0).tan();
+            let expected = if degrees > 90.0 { 1.0 / expected } else { expected };
+            let found = tangent_of_half(degrees);
+            assert!((found / expected - 1.0).abs() <= 4.0 * f64::EPSILON, "{degrees}: {found} {expected}");
+        }
+        assert_eq!(tangent_of_half(90.0), 1.0);
     }
 
     #[test]

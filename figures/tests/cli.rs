@@ -1,0 +1,367 @@
+//! The running program: every command, what it writes and where, and what it says when it cannot.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use rt_io::ppm;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Runs the program in `folder` with these arguments and this standard input.
+fn run(folder: &Path, arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_figures"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that does not read its input may have closed it already.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+/// Runs the program, which has to succeed, and returns what it wrote to stdout.
+fn stdout(folder: &Path, arguments: &[&str]) -> Vec<u8> {
+    let output = run(folder, arguments, "");
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
+
+/// Runs the program, which has to fail with this code, and returns what it said.
+fn refusal(folder: &Path, arguments: &[&str], input: &str, code: i32) -> String {
+    let output = run(folder, arguments, input);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    assert!(output.stdout.is_empty(), "{arguments:?}: nothing belongs on stdout");
+    assert!(said.starts_with("error: "), "{arguments:?}: {said}");
+    said
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// The scene file of a figure, as it lies in the sources.
+fn scene(figure: u8) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/figure-{figure}.toml"))
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn each_figure_is_its_golden_picture() {
+    let folder = folder();
+    for figure in 1..=6 {
+        let name = format!("figure-{figure}.ppm");
+        let found = stdout(folder.path(), &[&figure.to_string(), "--size", "64x48", "-o", "-"]);
+        let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(&name);
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            fs::write(&golden, &found).unwrap();
+        }
+        assert!(found == fs::read(&golden).unwrap(), "figure {figure} differs from {}", golden.display());
+    }
+}
+
+#[test]
+fn a_figure_is_its_scene_file() {
+    let folder = folder();
+    for figure in 1..=6 {
+        let built_in = stdout(folder.path(), &[&figure.to_string(), "--size", "48x64", "-o", "-"]);
+        let scene = scene(figure);
+        let from_file =
+            stdout(folder.path(), &["render", scene.to_str().unwrap(), "--size", "48x64", "-o", "-"]);
+        assert!(built_in == from_file, "figure {figure}");
+    }
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_threads() {
+    let folder = folder();
+    for figure in ["3", "6"] {
+        let pictures = ["1", "2", "7"].map(|threads| {
+            stdout(
+                folder.path(),
+                &[figure, "--size", "101x67", "--samples", "2", "--threads", threads, "-o", "-"],
+            )
+        });
+        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "figure {figure}");
+    }
+}
+
+#[test]
+fn all_draws_six_pictures_into_the_named_folder() {
+    let folder = folder();
+    stdout(folder.path(), &["all", "--size", "16x12", "-o", "new/pictures", "--quiet"]);
+    let expected: Vec<String> = (1..=6).map(|figure| format!("figure-{figure}.ppm")).collect();
+    assert_eq!(files(&folder.path().join("new/pictures")), expected);
+    for name in expected {
+        let bytes = fs::read(folder.path().join("new/pictures").join(&name)).unwrap();
+        assert!(bytes.starts_with(b"P6\n16 12\n255\n"), "{name}");
+    }
+}
+
+#[test]
+fn a_figure_goes_to_out_unless_told_otherwise() {
+    let folder = folder();
+    let output = run(folder.path(), &["4"], "");
+    assert!(output.status.success());
+    assert!(output.stdout.is_empty(), "nothing was asked for on stdout");
+    assert!(String::from_utf8_lossy(&output.stderr).starts_with("out/figure-4.ppm: 1024 x 768 in "));
+    let bytes = fs::read(folder.path().join("out/figure-4.ppm")).unwrap();
+    assert!(bytes.starts_with(b"P6\n1024 768\n255\n"));
+    assert_eq!(bytes.len(), 16 + 3 * 1024 * 768);
+}
+
+#[test]
+fn without_an_argument_the_number_comes_from_stdin() {
+    let folder = folder();
+    for answer in ["4\n", "4", " 4 \n"] {
+        let asked = run(folder.path(), &["--size", "16x12", "-o", "-"], answer);
+        assert!(asked.status.success(), "{answer:?}");
+        assert!(asked.stdout == stdout(folder.path(), &["4", "--size", "16x12", "-o", "-"]), "{answer:?}");
+        assert!(asked.stderr.is_empty(), "only a terminal is asked");
+    }
+    for (answer, quoted) in [("", "\"\""), ("\n", "\"\""), ("7\n", "\"7\""), ("three\n", "\"three\"")] {
+        let said = refusal(folder.path(), &[], answer, 2);
+        assert_eq!(
+            said,
+            format!("error: expected the number of a figure, 1 to 6, or \"all\", found {quoted}\n")
+        );
+    }
+    assert!(files(folder.path()).is_empty(), "a wrong answer draws nothing");
+}
+
+#[test]
+fn list_names_the_six_figures() {
+    let text = String::from_utf8(stdout(folder().path(), &["list"])).unwrap();
+    assert_eq!(text.lines().count(), 6);
+    for (line, number) in text.lines().zip(1..) {
+        assert!(line.starts_with(&format!("{number}  ")), "{line}");
+    }
+}
+
+#[test]
+fn the_format_follows_the_ending_unless_it_is_named() {
+    let folder = folder();
+    let magic = |arguments: &[&str], file: &str| {
+        stdout(folder.path(), &[&["1", "--size", "8x6", "--quiet"], arguments].concat());
+        fs::read(folder.path().join(file)).unwrap()[..2].to_vec()
+    };
+    assert_eq!(magic(&["-o", "a.ppm"], "a.ppm"), b"P6");
+    assert_eq!(magic(&["-o", "a.png"], "a.png"), b"\x89P");
+    assert_eq!(magic(&["-o", "a.image"], "a.image"), b"P6");
+    assert_eq!(magic(&["-o", "b.png", "--format", "ppm-plain"], "b.png"), b"P3");
+    assert_eq!(magic(&["-o", ".", "--format", "png"], "figure-1.png"), b"\x89P");
+    assert_eq!(magic(&["-o", "folder/"], "folder/figure-1.ppm"), b"P6");
+}
+
+#[test]
+fn raw_plain_and_png_hold_the_same_pixels() {
+    let folder = folder();
+    for depth in ["8", "16"] {
+        let pictures = ["ppm", "ppm-plain", "png"].map(|format| {
+            let bytes = stdout(
+                folder.path(),
+                &["6", "--size", "32x24", "--depth", depth, "--format", format, "-o", "-"],
+            );
+            rt_io::decode_image(&bytes, &rt_io::Limits::default()).unwrap().pixmap
+        });
+        assert_eq!(pictures[0].maxval(), if depth == "8" { 255 } else { 65535 });
+        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{depth} bits");
+    }
+}
+
+#[test]
+fn sixteen_bits_hold_more_than_eight() {
+    let folder = folder();
+    let bytes = stdout(folder.path(), &["5", "--size", "32x24", "--depth", "16", "-o", "-"]);
+    let fine = ppm::read_bytes(&bytes, &rt_io::Limits::default()).unwrap();
+    let inner = fine.to_samples().iter().filter(|&&sample| sample % 257 != 0).count();
+    assert!(inner > 100, "only {inner} samples lie between those of 8 bits");
+}
+
+#[test]
+fn more_samples_give_the_mean_of_their_colors() {
+    // A picture of twice the size has the four samples of each pixel as its pixels. Flat figures have colours k / 255
+    // nowhere near rounding, so the mean can be checked to the last bit at 16 bits: each sample is off by 1/2 at most.
+    let folder = folder();
+    let read = |arguments: &[&str]| {
+        let bytes = stdout(folder.path(), &[arguments, &["--depth", "16", "-o", "-"]].concat());
+        ppm::read_bytes(&bytes, &rt_io::Limits::default()).unwrap()
+    };
+    let mean = read(&["2", "--size", "20x15", "--samples", "2"]);
+    let single = read(&["2", "--size", "40x30"]);
+    for (x, y) in (0..15).flat_map(|y| (0..20).map(move |x| (x, y))) {
+        for channel in 0..3 {
+            let four = [(0, 0), (1, 0), (0, 1), (1, 1)];
+            let sum: u32 =
+                four.iter().map(|(i, j)| u32::from(single.pixel(2 * x + i, 2 * y + j)[channel])).sum();
+            let found = u32::from(mean.pixel(x, y)[channel]);
+            assert!((4 * found).abs_diff(sum) <= 4, "pixel {x}, {y}: {found} is no quarter of {sum}");
+        }
+    }
+}
+
+#[test]
+fn json_tells_what_was_done() {
+    let folder = folder();
+    let text = stdout(folder.path(), &["all", "--size", "16x12", "--samples", "2", "--json", "-o", "here/"]);
+    let accounts: Vec<Value> =
+        String::from_utf8(text).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(accounts.len(), 6);
+    for (account, number) in accounts.iter().zip(1..) {
+        assert_eq!(account["picture"], format!("here/figure-{number}.ppm"));
+        assert_eq!(account["width"], 16);
+        assert_eq!(account["height"], 12);
+        assert_eq!(account["rays"], 16 * 12 * 4);
+        let hits = account["hits"].as_u64().unwrap();
+        assert!(0 < hits && hits < 16 * 12 * 4, "every figure has an object and a background: {hits}");
+        for phase in ["load", "build", "trace", "write"] {
+            assert!(account["seconds"][phase].as_f64().unwrap() >= 0.0, "{phase}");
+        }
+        if cfg!(target_os = "linux") {
+            assert!(account["peak_memory_bytes"].as_u64().unwrap() > 1 << 20);
+        }
+    }
+}
+
+#[test]
+fn hits_are_the_pixels_of_the_object() {
+    let folder = folder();
+    let bytes = stdout(folder.path(), &["1", "--size", "64x48", "-o", "-"]);
+    let white = bytes[13..].chunks(3).filter(|pixel| *pixel == [255; 3]).count();
+    let text = stdout(folder.path(), &["1", "--size", "64x48", "--json", "-o", "a.ppm"]);
+    let account: Value = serde_json::from_slice(&text).unwrap();
+    assert_eq!(account["hits"], white);
+}
+
+#[test]
+fn the_reports_tree_saves_tests_in_figure_3() {
+    let folder = folder();
+    let text = String::from_utf8(stdout(folder.path(), &["tests", "3", "--size", "64x48"])).unwrap();
+    let number = |line: &str| -> f64 {
+        let words = text.lines().find_map(|found| found.strip_prefix(line)).unwrap();
+        words.split_whitespace().next().unwrap().parse().unwrap()
+    };
+    assert_eq!(number("rays"), 64.0 * 48.0);
+    assert_eq!(number("tests of a loop"), 233.0);
+    assert!(number("tests of the tree") < 233.0 / 4.0, "{text}");
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let folder = folder();
+    let output = run(folder.path(), &["3", "--size", "16x12", "--quiet"], "");
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
+}
+
+#[test]
+fn convert_gives_netpbms_bytes() {
+    let folder = folder();
+    let texture = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/earth-natural-720x360.png");
+    let found = stdout(folder.path(), &["convert", texture.to_str().unwrap(), "-"]);
+    let Ok(netpbm) = Command::new("pngtopnm").arg(&texture).output() else {
+        eprintln!("pngtopnm is not installed: not compared with it");
+        return;
+    };
+    assert!(found == netpbm.stdout);
+}
+
+#[test]
+fn convert_keeps_the_depth_unless_told_otherwise() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("deep.ppm"), b"P3 2 1 65535  0 257 65535  514 1 128").unwrap();
+    stdout(folder.path(), &["convert", "deep.ppm", "kept.ppm"]);
+    stdout(folder.path(), &["convert", "deep.ppm", "eight.ppm", "--depth", "8", "--format", "ppm-plain"]);
+    stdout(folder.path(), &["convert", "eight.ppm", "back.ppm", "--depth", "16", "--format", "ppm-plain"]);
+    let kept = fs::read(path("kept.ppm")).unwrap();
+    assert_eq!(kept, b"P6\n2 1\n65535\n\x00\x00\x01\x01\xff\xff\x02\x02\x00\x01\x00\x80");
+    let pixels =
+        |name: &str| ppm::read_bytes(&fs::read(path(name)).unwrap(), &rt_io::Limits::default()).unwrap();
+    assert_eq!(pixels("eight.ppm").to_samples(), [0, 1, 255, 2, 0, 0]);
+    assert_eq!(pixels("back.ppm").to_samples(), [0, 257, 65535, 514, 0, 0]);
+}
+
+#[test]
+fn convert_makes_grey_rgb_and_warns_of_transparency() {
+    let folder = folder();
+    fs::write(folder.path().join("grey.pgm"), b"P2 2 1 255  7 200").unwrap();
+    stdout(folder.path(), &["convert", "grey.pgm", "grey.ppm"]);
+    assert_eq!(fs::read(folder.path().join("grey.ppm")).unwrap(), b"P6\n2 1\n255\n\x07\x07\x07\xc8\xc8\xc8");
+
+    let png = |alpha_data: &[u8]| [PNG_HEAD, alpha_data, PNG_END].concat();
+    fs::write(folder.path().join("glass.png"), png(HALF_RED)).unwrap();
+    fs::write(folder.path().join("paint.png"), png(OPAQUE_RED)).unwrap();
+    for (name, warning) in [("glass", "warning: glass.png: transparency was dropped\n"), ("paint", "")] {
+        let output = run(folder.path(), &["convert", &format!("{name}.png"), &format!("{name}.ppm")], "");
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(String::from_utf8_lossy(&output.stderr), warning, "{name}");
+        let ppm = fs::read(folder.path().join(format!("{name}.ppm"))).unwrap();
+        assert_eq!(ppm, b"P6\n1 1\n255\n\xff\x00\x00", "{name}");
+    }
+}
+
+/// The signature and header of a PNG of one pixel with alpha.
+const PNG_HEAD: &[u8] = b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x08\x06\x00\x00\x00\x1f\x15\xc4\x89";
+/// Its pixel: red, half transparent.
+const HALF_RED: &[u8] =
+    b"\x00\x00\x00\x0d\x49\x44\x41\x54\x78\x9c\x63\xf8\xcf\xc0\xd0\x00\x00\x04\x81\x01\x80\x2c\x55\xce\xb0";
+/// Its pixel: red, opaque.
+const OPAQUE_RED: &[u8] =
+    b"\x00\x00\x00\x0d\x49\x44\x41\x54\x78\x9c\x63\xf8\xcf\xc0\xf0\x1f\x00\x05\x00\x01\xff\x89\x99\x3d\x1d";
+/// The end of a PNG.
+const PNG_END: &[u8] = b"\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
+
+#[test]
+fn a_user_error_is_told_with_its_place() {
+    let folder = folder();
+    let text = "[material.m]\ncolor = [1, 1, 1]\n[[sphere]]\nraduis = 1\n";
+    fs::write(folder.path().join("my.toml"), text).unwrap();
+    assert_eq!(
+        refusal(folder.path(), &["render", "my.toml"], "", 1),
+        "error: my.toml:4:1: unknown field \"raduis\", expected one of \"center\", \"radius\", \"material\"\n"
+    );
+    assert!(!folder.path().join("out").exists(), "nothing is made before the scene is read");
+}
+
+#[test]
+fn what_cannot_be_written_is_told() {
+    let folder = folder();
+    let said = |out: &str| refusal(folder.path(), &["1", "--size", "8x6", "-o", out], "", 1);
+    fs::write(folder.path().join("file"), "").unwrap();
+    assert_eq!(
+        said("no/such/folder.ppm"),
+        "error: no/such/folder.ppm: the folder no/such does not exist; create it first\n"
+    );
+    assert!(said("file/").starts_with("error: cannot make folder file/: "));
+    if cfg!(target_os = "linux") {
+        assert!(said("/dev/full").contains("No space left"));
+        assert!(said("/proc/figure.ppm").starts_with("error: /proc/figure.ppm: "));
+    }
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let folder = folder();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_figures"))
+        .args(["1", "-o", "-"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{:?}", output.status);
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
