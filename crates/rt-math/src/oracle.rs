@@ -25,25 +25,49 @@ pub(crate) fn round(x: &Exact) -> f64 {
 
 /// The double nearest to the positive number that `compare` tells from any rational (`Less`: the number is smaller).
 pub(crate) fn round_by(compare: impl Fn(Exact) -> Ordering) -> f64 {
-    // the bits of the non-negative doubles are ordered as their values; infinity stands for 2^1024
-    let value = |bits: u64| {
-        if bits == f64::INFINITY.to_bits() {
-            exact(2f64.powi(1023)) * exact(2.0)
-        } else {
-            exact(f64::from_bits(bits))
-        }
-    };
+    // the bits of the non-negative doubles are ordered as their values
     let (mut low, mut high) = (0, f64::INFINITY.to_bits());
     while high - low > 1 {
         let middle = low + (high - low) / 2;
-        if compare(value(middle)) == Ordering::Less { high = middle } else { low = middle }
+        if compare(position(middle)) == Ordering::Less { high = middle } else { low = middle }
     }
-    let midpoint = (value(low) + value(high)) / exact(2.0);
+    let midpoint = (position(low) + position(high)) / exact(2.0);
     f64::from_bits(match compare(midpoint) {
         Ordering::Less => low,
         Ordering::Greater => high,
         Ordering::Equal => low + (low & 1),
     })
+}
+
+/// Whether `x` is the double nearest to the number that `compare` tells from any rational (`Less`: the number is
+/// smaller): between the midpoints to both neighbours, on one of them only if `x` is even. An exact zero must be +0.0.
+pub(crate) fn is_rounding_of(x: f64, compare: impl Fn(&Exact) -> Ordering) -> bool {
+    let sign = compare(&Exact::ZERO);
+    if sign == Ordering::Equal {
+        return x.to_bits() == 0;
+    }
+    let negative = sign == Ordering::Less;
+    if x.is_nan() || x.is_sign_negative() != negative {
+        return false;
+    }
+    let bits = x.abs().to_bits();
+    let half = exact(0.5);
+    let not_beyond = |first: u64, outside: Ordering| {
+        let midpoint = (position(first) + position(first + 1)) * &half;
+        let order = if negative { compare(&-midpoint).reverse() } else { compare(&midpoint) };
+        order != outside && (order != Ordering::Equal || bits & 1 == 0)
+    };
+    (bits == 0 || not_beyond(bits - 1, Ordering::Less))
+        && (x.is_infinite() || not_beyond(bits, Ordering::Greater))
+}
+
+/// The value of the double with these bits, not negative; infinity stands for 2^1024, its place in the sequence.
+fn position(bits: u64) -> Exact {
+    if bits == f64::INFINITY.to_bits() {
+        exact(2f64.powi(1023)) * exact(2.0)
+    } else {
+        exact(f64::from_bits(bits))
+    }
 }
 
 /// The number of random cases per class: 10 000, or `long` with the environment variable `RT_LONG` set.

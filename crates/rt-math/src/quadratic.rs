@@ -1,8 +1,18 @@
-//! Real roots of a quadratic.
+//! Real roots of a quadratic, correctly rounded.
+//!
+//! With `z = |b| + √D` and `D = b² - 4ac` the roots are `-sign(b) z / 2a` and `-sign(b) 2c / z`: no subtraction of like
+//! numbers remains but that in `D`. Three stages, each handing what it cannot decide to the next:
+//!
+//! 1. doubles: unless `D` cancels by more than 2⁻²⁰, its sign is certain and `z` good to 42 bits; one Newton step on
+//!    `z (z - 2|b|) + 4ac = 0`, which `z` solves, doubles that, and both quotients get their remainder as a correction;
+//! 2. double-double: `D` of either sign or zero is certain, whatever the cancellation;
+//! 3. exact integers: what lies too near a midpoint of two doubles, or outside the range of the second stage.
 
 use core::cmp::Ordering;
 
-use crate::exact::Dyadic;
+use crate::exact::stage::{Stage, decided};
+use crate::exact::{DoubleDouble, Dyadic, fast_two_sum, power_of_two, remainder, round_if_certain, two_prod};
+use crate::fma_dispatch;
 
 /// The real solutions of an equation, each distinct one once.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,23 +27,108 @@ pub enum Roots {
     All,
 }
 
-/// Returns the real roots of `a x² + b x + c`, in ascending order.
-///
-/// With `a == 0` the equation is linear; `a == b == 0` has no root, or `Roots::All` when `c == 0` too. A double root is
-/// returned once. The number of roots is exact and each root is correctly rounded, for all finite coefficients:
-/// two distinct roots may round to the same double, a root beyond the range of doubles is infinite, one that underflows
-/// is a zero with the root's sign, and a root that is exactly zero is +0.0. With a coefficient that is infinite or NaN
-/// the answer is `Roots::None`.
-///
-/// ```
-/// use rt_math::{Roots, solve_quadratic};
-///
-/// assert_eq!(solve_quadratic(1.0, -3.0, 2.0), Roots::Two(1.0, 2.0));
-/// assert_eq!(solve_quadratic(1.0, -2.0, 1.0), Roots::One(1.0));
-/// assert_eq!(solve_quadratic(1e300, 0.0, 1e300), Roots::None);
-/// ```
-#[must_use]
-pub fn solve_quadratic(a: f64, b: f64, c: f64) -> Roots {
+fma_dispatch! {
+    /// Returns the real roots of `a x² + b x + c`, in ascending order.
+    ///
+    /// With `a == 0` the equation is linear; `a == b == 0` has no root, or `Roots::All` when `c == 0` too. A double root
+    /// is returned once. The number of roots is exact and each root is correctly rounded, for all finite coefficients:
+    /// two distinct roots may round to the same double, a root beyond the range of doubles is infinite, one that
+    /// underflows is a zero with the root's sign, and a root that is exactly zero is +0.0. With a coefficient that is
+    /// infinite or NaN the answer is `Roots::None`. `docs/numerics.md`, section 2, has the proof.
+    ///
+    /// Source of the form without cancellation: W. Kahan, "On the Cost of Floating-Point Computation Without
+    /// Extra-Precise Arithmetic", 2004.
+    ///
+    /// ```
+    /// use rt_math::{Roots, solve_quadratic};
+    ///
+    /// assert_eq!(solve_quadratic(1.0, -3.0, 2.0), Roots::Two(1.0, 2.0));
+    /// assert_eq!(solve_quadratic(1.0, -2.0, 1.0), Roots::One(1.0));
+    /// assert_eq!(solve_quadratic(1e300, 0.0, 1e300), Roots::None);
+    /// ```
+    #[must_use]
+    pub fn solve_quadratic(a: f64, b: f64, c: f64) -> Roots = kernel;
+}
+
+/// The filter decides if `|D|` exceeds this part of `b²`: below, its rounding errors weigh too much.
+const CANCELLATION: f64 = power_of_two(-20);
+/// ... and lies between this and its inverse, so that no product that matters over- or underflows.
+const D_FLOOR: f64 = power_of_two(-900);
+/// Bound of the filter's error in a root: this part of it, and an absolute one for what may underflow.
+const FILTER_ERROR: f64 = power_of_two(-73);
+const FILTER_ERROR_FLOOR: f64 = power_of_two(-600);
+/// Bound of the relative error of a root in double-double: 28.1 u² is proved.
+const DOUBLE_DOUBLE_ERROR: f64 = power_of_two(-101);
+
+#[inline(always)]
+fn kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Roots {
+    let square = b * b;
+    let d = multiply_add::<FMA>(4.0 * a, -c, square);
+    let certain = CANCELLATION * square;
+    let certain = if certain > D_FLOOR { certain } else { D_FLOOR };
+    // NaN and infinity fail these comparisons
+    if d.abs() > certain && d.abs() < 1.0 / D_FLOOR {
+        if d < 0.0 {
+            decided(Stage::Filter);
+            return Roots::None;
+        }
+        if let Some(roots) = filter::<FMA>(a, b, c, d) {
+            decided(Stage::Filter);
+            return roots;
+        }
+    }
+    rest(a, b, c)
+}
+
+/// The two roots in doubles with corrections, if these decide their rounding; `d` is `D` to 31 bits or better.
+#[inline(always)]
+fn filter<const FMA: bool>(a: f64, b: f64, c: f64, d: f64) -> Option<Roots> {
+    let root = d.sqrt();
+    let z = b.abs() + root;
+    // the Newton step, its residual as a sum of exact terms
+    let (t, t_low) = fast_two_sum(z, -2.0 * b.abs());
+    let (zt, zt_low) = two_prod::<FMA>(z, t);
+    let (product, product_low) = two_prod::<FMA>(4.0 * a, c);
+    let residual = (zt + product) + multiply_add::<FMA>(t_low, z, zt_low + product_low);
+    let z_low = residual * (-0.5 / root);
+    // both quotients side by side, which the compiler turns into two-lane instructions
+    let sign = 1f64.copysign(-b);
+    let numerator = [z, sign * (2.0 * c)];
+    let numerator_low = [z_low, 0.0];
+    let denominator = [sign * (2.0 * a), z];
+    let minus_denominator_low = [0.0, -z_low];
+    let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
+    for i in 0..2 {
+        let inverse = 1.0 / denominator[i];
+        let x = numerator[i] * inverse;
+        let rest = remainder::<FMA>(numerator[i], x, denominator[i])
+            + multiply_add::<FMA>(x, minus_denominator_low[i], numerator_low[i]);
+        let x_low = rest * inverse;
+        let error = multiply_add::<FMA>(x.abs(), FILTER_ERROR, FILTER_ERROR_FLOOR);
+        // the rounding test, for both roots at once
+        lower[i] = x + (x_low - error);
+        upper[i] = x + (x_low + error);
+    }
+    if (lower[0] == upper[0]) & (lower[1] == upper[1]) {
+        let first_is_smaller = upper[0] < upper[1];
+        let smaller = if first_is_smaller { upper[0] } else { upper[1] };
+        let larger = if first_is_smaller { upper[1] } else { upper[0] };
+        Some(Roots::Two(smaller, larger))
+    } else {
+        None
+    }
+}
+
+/// `x y + z` where the rounding of the product does not matter.
+#[inline(always)]
+fn multiply_add<const FMA: bool>(x: f64, y: f64, z: f64) -> f64 {
+    if FMA { x.mul_add(y, z) } else { x * y + z }
+}
+
+/// All that the filter does not decide.
+#[cold]
+#[inline(never)]
+fn rest(a: f64, b: f64, c: f64) -> Roots {
     if !(a.is_finite() && b.is_finite() && c.is_finite()) {
         return Roots::None;
     }
@@ -46,19 +141,44 @@ pub fn solve_quadratic(a: f64, b: f64, c: f64) -> Roots {
             let other = negated_quotient(b, a);
             if other.is_sign_negative() { Roots::Two(other, 0.0) } else { Roots::Two(0.0, other) }
         }
-        (false, _, false) => integers(a, b, c),
+        (false, _, false) => double_double(a, b, c).unwrap_or_else(|| integers(a, b, c)),
     }
 }
 
-/// `-n / d`, correctly rounded; an exact zero is +0.0.
+/// `-n / d`, correctly rounded as any division is; an exact zero is +0.0.
 fn negated_quotient(n: f64, d: f64) -> f64 {
     if n == 0.0 { 0.0 } else { -n / d }
 }
 
-#[cold]
+/// The second stage; `a` and `c` are not zero.
+fn double_double(a: f64, b: f64, c: f64) -> Option<Roots> {
+    type Number = DoubleDouble<false>;
+    let in_range = |x: f64| (power_of_two(-256)..power_of_two(256)).contains(&x.abs());
+    if !(in_range(a) && in_range(c) && (b == 0.0 || in_range(b))) {
+        return None;
+    }
+    let d = Number::product(b, b) - Number::product(4.0 * a, c);
+    let roots = if d.high() < 0.0 {
+        Roots::None
+    } else if d.high() == 0.0 {
+        Roots::One(-b / (2.0 * a))
+    } else {
+        let z = Number::new(b.abs()) + d.sqrt();
+        let sign = Number::new(2f64.copysign(-b));
+        let round = |x: Number| round_if_certain(x.high(), x.low(), x.high().abs() * DOUBLE_DOUBLE_ERROR);
+        let (x, y) = (round(z / (sign * Number::new(a)))?, round(sign * Number::new(c) / z)?);
+        if x < y { Roots::Two(x, y) } else { Roots::Two(y, x) }
+    };
+    decided(Stage::DoubleDouble);
+    Some(roots)
+}
+
+/// The last stage, exact for all finite coefficients; `a` and `c` are not zero.
 #[inline(never)]
 fn integers(a: f64, b: f64, c: f64) -> Roots {
+    // (-b ± √D) / 2a: all of b, √D and 2 m 2a are below 2^1028 and multiples of 2^-2147
     type Number = Dyadic<104>;
+    decided(Stage::Integers);
     let [a, b, c] = [a, b, c].map(Number::from_f64);
     let discriminant = b.square() - (&a * &c).scale(2);
     let (minus_b, two_a) = (-b, &a + &a);
@@ -68,5 +188,268 @@ fn integers(a: f64, b: f64, c: f64) -> Roots {
         Ordering::Equal => Roots::One(Number::quotient(&minus_b, &two_a)),
         Ordering::Greater if a.sign() == Ordering::Less => Roots::Two(root(false), root(true)),
         Ordering::Greater => Roots::Two(root(true), root(false)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::stage::decisions;
+    use crate::oracle::{Exact, Rng, cases, exact, is_rounding_of};
+
+    /// Checks one equation against exact rational arithmetic, with and without FMA.
+    fn check(a: f64, b: f64, c: f64) {
+        let input = format!("solve_quadratic({a:e}, {b:e}, {c:e})");
+        let found = kernel::<false>(a, b, c);
+        let bits = |roots| match roots {
+            Roots::One(x) => [x.to_bits(), 0],
+            Roots::Two(x, y) => [x.to_bits(), y.to_bits()],
+            Roots::None | Roots::All => [0, 0],
+        };
+        for other in [kernel::<true>(a, b, c), solve_quadratic(a, b, c)] {
+            let same = core::mem::discriminant(&found) == core::mem::discriminant(&other)
+                && bits(found) == bits(other);
+            assert!(same, "{input}: {found:?} without FMA, {other:?} with it");
+        }
+        let [a, b, c] = [a, b, c].map(exact);
+        // how the smaller or larger root compares with m
+        let compare = |larger: bool, m: &Exact| {
+            if a == Exact::ZERO {
+                // b (m - x) = b m + c
+                let order = Exact::ZERO.cmp(&(&b * m + &c));
+                return if b < Exact::ZERO { order.reverse() } else { order };
+            }
+            let (a, b, c) = if a < Exact::ZERO { (-&a, -&b, -&c) } else { (a.clone(), b.clone(), c.clone()) };
+            let value = ((&a * m) + &b) * m + &c;
+            let right_of_vertex = (exact(2.0) * a * m).cmp(&-b);
+            // a double root: only m = x makes it zero. Otherwise inside the roots the value is negative.
+            match (value.cmp(&Exact::ZERO), right_of_vertex) {
+                (Ordering::Less, _) => {
+                    if larger {
+                        Ordering::Greater
+                    } else {
+                        Ordering::Less
+                    }
+                }
+                (Ordering::Equal, Ordering::Equal) => Ordering::Equal,
+                (Ordering::Equal, right) if (right == Ordering::Greater) == larger => Ordering::Equal,
+                (_, right) => right.reverse(),
+            }
+        };
+        let d = b.sqr() - exact(4.0) * &a * &c;
+        let correct = match found {
+            Roots::All => a == Exact::ZERO && b == Exact::ZERO && c == Exact::ZERO,
+            Roots::None if a == Exact::ZERO => b == Exact::ZERO && c != Exact::ZERO,
+            Roots::None => d < Exact::ZERO,
+            Roots::One(x) => {
+                (if a == Exact::ZERO { b != Exact::ZERO } else { d == Exact::ZERO })
+                    && is_rounding_of(x, |m| compare(false, m))
+            }
+            Roots::Two(x, y) => {
+                a != Exact::ZERO
+                    && d > Exact::ZERO
+                    && x.total_cmp(&y).is_le()
+                    && is_rounding_of(x, |m| compare(false, m))
+                    && is_rounding_of(y, |m| compare(true, m))
+            }
+        };
+        assert!(correct, "{input} gives {found:?}");
+    }
+
+    /// Checks a class of equations; returns how many of them each stage decided.
+    fn check_class(seed: u64, mut coefficients: impl FnMut(&mut Rng) -> [f64; 3]) -> [usize; 3] {
+        let mut rng = Rng::new(seed);
+        decisions();
+        let mut total = [0; 3];
+        for _ in 0..cases(1_000_000) {
+            let [a, b, c] = coefficients(&mut rng);
+            if a.is_finite() && b.is_finite() && c.is_finite() {
+                check(a, b, c);
+            }
+            // three calls each
+            for (sum, count) in total.iter_mut().zip(decisions()) {
+                *sum += count;
+            }
+        }
+        total
+    }
+
+    #[test]
+    fn benign_equations_are_decided_by_the_filter() {
+        let [filter, double_double, integers] =
+            check_class(20, |rng| [0; 3].map(|_| rng.with_exponent(-3..3)));
+        assert!(filter > 1_000 * (double_double + integers), "{filter} {double_double} {integers}");
+    }
+
+    #[test]
+    fn roots_of_any_doubles_are_correctly_rounded() {
+        let [filter, _, integers] = check_class(21, |rng| [0; 3].map(|_| rng.finite()));
+        assert!(filter > 1_000 && integers > 1_000, "{filter} {integers}");
+    }
+
+    #[test]
+    fn discriminants_decided_in_the_last_bits_are_exact() {
+        let [_, double_double, _] = check_class(22, |rng| {
+            let range = [-2..2, -200..200, -500..500][rng.below(3)].clone();
+            let (a, b) = (rng.with_exponent(range.clone()), rng.with_exponent(range));
+            let c = b / a * b / 4.0;
+            let steps = rng.below(5);
+            [a, b, f64::from_bits((c.to_bits() + steps as u64).saturating_sub(2))]
+        });
+        assert!(double_double > 5_000, "{double_double}");
+    }
+
+    #[test]
+    fn double_roots_are_found_once() {
+        let mut single = 0;
+        check_class(23, |rng| {
+            // (p x + q)^2 times a power of two, and now and then a bit off
+            let bits = |rng: &mut Rng| f64::from(rng.integer(-(1 << 26)..1 << 26));
+            let (p, q) = (bits(rng), bits(rng));
+            let [i, j] = [0; 2].map(|_| rng.integer(-400..400));
+            let scale = |x: f64, k: i32| x * 2f64.powi(k);
+            let (a, b, c) = (scale(p * p, 2 * i), scale(2.0 * p * q, i + j), scale(q * q, 2 * j));
+            single += usize::from(matches!(solve_quadratic(a, b, c), Roots::One(_)));
+            match rng.below(4) {
+                0 => [a.next_up(), b, c],
+                1 => [a, b.next_down(), c],
+                _ => [a, b, c],
+            }
+        });
+        assert!(single > 8_000, "{single}");
+    }
+
+    #[test]
+    fn roots_next_to_a_midpoint_are_decided_by_integers() {
+        let [.., integers] = check_class(24, |rng| {
+            // M odd of 54 bits is a midpoint; (x - M) (x + w) = x^2 - (M - w) x - M w, whose last coefficient is rounded
+            let midpoint = (1_u64 << 53) | rng.bits() >> 11 | 1;
+            let w = (rng.bits() % (2 << rng.below(20))) | 1;
+            let power = |rng: &mut Rng| 2f64.powi(rng.integer(-100..100));
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "even, hence exact; and the rounding that is wanted"
+            )]
+            let (b, c) = ((midpoint - w) as f64, (u128::from(midpoint) * u128::from(w)) as f64);
+            let (s, t) = (power(rng), power(rng));
+            let sign = if rng.below(2) == 0 { 1.0 } else { -1.0 };
+            [s, -b * s * t * sign, -c * s * t * t]
+        });
+        assert!(integers > 10_000, "{integers}");
+    }
+
+    #[test]
+    fn roots_around_the_overflow_threshold_round_as_they_should() {
+        let mut seen = [0; 2];
+        check_class(25, |rng| {
+            let k = rng.integer(-60..10);
+            let near_one = 1.0 + f64::from(rng.integer(-3..4)) * f64::EPSILON;
+            let a = near_one * 2f64.powi(k);
+            let b =
+                rng.with_exponent(1022..1024).abs().max(f64::from_bits(f64::MAX.to_bits() - rng.bits() % 8));
+            let range = [-1074..1024, 900..1024][rng.below(2)].clone();
+            let c = rng.with_exponent(range);
+            let b = b * 2f64.powi(k.min(0));
+            if let Roots::Two(x, y) = solve_quadratic(a, b, c) {
+                seen[usize::from(x.is_infinite() || y.is_infinite())] += 1;
+            }
+            [a, b, c]
+        });
+        assert!(seen[0] > 1_000 && seen[1] > 1_000, "{seen:?}");
+    }
+
+    #[test]
+    fn subnormal_roots_and_ties_between_them_round_to_even() {
+        let mut ties = 0;
+        check_class(26, |rng| {
+            // (2^i x - m 2^(i - 1075)) (x - r): the first root is a midpoint of two subnormals if m is odd
+            let m = f64::from(rng.integer(-9..10));
+            let r = f64::from(rng.integer(-1000..1000)) * 2f64.powi(rng.integer(-1074..40));
+            let i = rng.integer(30..900);
+            let scale = 2f64.powi(i);
+            let tiny = m * 2f64.powi(i - 1000) * 2f64.powi(-75);
+            ties += usize::from(m % 2.0 != 0.0);
+            [scale, -(scale * r + tiny), tiny * r]
+        });
+        assert!(ties > 1_000, "{ties}");
+    }
+
+    #[test]
+    fn subnormal_coefficients_are_solved() {
+        check_class(27, |rng| {
+            let mut pick = || {
+                let range = [-1074..-1020, -1074..-900, -540..-500, 0..30][rng.below(4)].clone();
+                if rng.below(8) == 0 { 0.0 } else { rng.with_exponent(range) }
+            };
+            [pick(), pick(), pick()]
+        });
+    }
+
+    #[test]
+    fn one_root_may_be_far_smaller_than_the_other() {
+        let [filter, ..] = check_class(28, |rng| {
+            let (small, large) = (rng.with_exponent(-150..-20), rng.with_exponent(20..150));
+            [[1.0, large, small], [small, large, rng.with_exponent(-5..5)], [large, small, -large]]
+                [rng.below(3)]
+        });
+        assert!(filter > 10_000, "{filter}");
+    }
+
+    #[test]
+    fn special_values_in_all_combinations_are_solved() {
+        let values = [
+            0.0,
+            1.0,
+            2.0,
+            3.0,
+            1e-30,
+            1e200,
+            f64::from_bits(1),
+            f64::from_bits(3),
+            f64::MIN_POSITIVE,
+            f64::MAX,
+            2f64.powi(1023),
+            2f64.powi(-537),
+            f64::MAX / 4.0,
+        ];
+        let signed: Vec<f64> = values.iter().flat_map(|&x| [x, -x]).collect();
+        for &a in &signed {
+            for &b in &signed {
+                for &c in &signed {
+                    check(a, b, c);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_coefficient_that_is_not_finite_gives_no_root() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for good in [0.0, 1.0, -1.0, f64::MAX, f64::from_bits(1)] {
+                for [a, b, c] in
+                    [[bad, good, good], [good, bad, good], [good, good, bad], [bad, bad, good], [bad; 3]]
+                {
+                    assert_eq!(kernel::<false>(a, b, c), Roots::None);
+                    assert_eq!(kernel::<true>(a, b, c), Roots::None);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn zero_roots_have_the_sign_that_the_docs_state() {
+        let bits = |roots: Roots| match roots {
+            Roots::One(x) => vec![x.to_bits()],
+            Roots::Two(x, y) => vec![x.to_bits(), y.to_bits()],
+            Roots::None | Roots::All => vec![],
+        };
+        let (plus, minus) = (0.0_f64.to_bits(), (-0.0_f64).to_bits());
+        assert_eq!(bits(solve_quadratic(-1.0, -0.0, -0.0)), [plus]);
+        assert_eq!(bits(solve_quadratic(0.0, -3.0, 0.0)), [plus]);
+        assert_eq!(bits(solve_quadratic(1.0, -2.0, -0.0)), [plus, 2.0_f64.to_bits()]);
+        let tiny = f64::from_bits(1);
+        assert_eq!(bits(solve_quadratic(f64::MAX, tiny, 0.0)), [minus, plus]);
+        assert_eq!(bits(solve_quadratic(0.0, f64::MAX, tiny)), [minus]);
+        assert_eq!(bits(solve_quadratic(1.0, -1e300, tiny)), [plus, 1e300_f64.to_bits()]);
     }
 }

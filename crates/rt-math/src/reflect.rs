@@ -1,14 +1,22 @@
-//! Reflection of a vector.
+//! Reflection of a vector, correctly rounded.
+//!
+//! Each component `v_i - k n_i`, with `k = 2 (v·n) / (n·n)`, is computed in double-double: both dot products with the exact
+//! errors of their terms, the quotient with its remainder, the difference with its error. What then lies too near a midpoint
+//! of two doubles, or cancels, or is out of range, is left to exact integers. A filter in plain doubles before that
+//! would decide nothing, since it is the value that is asked for and not a verdict.
 
 use glam::DVec3;
 
-use crate::exact::Dyadic;
+use crate::exact::stage::{Stage, decided};
+use crate::exact::{Dyadic, power_of_two, remainder, two_diff, two_prod, two_sum};
+use crate::fma_dispatch;
 
 /// Returns `incident` mirrored in the plane through the origin with the given normal: `v - 2 (v·n) / (n·n) n`.
 ///
 /// The normal may have any length but zero. Each component is correctly rounded, for all finite vectors: one beyond the
 /// range of doubles is infinite, one that underflows is a zero with the sign of the exact value, and one that is exactly
 /// zero is +0.0. With a zero normal, or an infinite or NaN component in either vector, every component is NaN.
+/// `docs/numerics.md`, section 4, has the proof.
 ///
 /// ```
 /// use glam::DVec3;
@@ -17,19 +25,252 @@ use crate::exact::Dyadic;
 /// assert_eq!(reflect(DVec3::new(1.0, -1.0, 0.0), DVec3::new(0.0, 5.0, 0.0)), DVec3::new(1.0, 1.0, 0.0));
 /// ```
 #[must_use]
+#[inline]
 pub fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
-    if !(incident.is_finite() && normal.is_finite()) || normal == DVec3::ZERO {
-        return DVec3::NAN;
-    }
-    integers(incident, normal)
+    dispatch(incident.x, incident.y, incident.z, normal.x, normal.y, normal.z)
 }
 
+fma_dispatch! {
+    fn dispatch(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> DVec3 = kernel;
+}
+
+/// Double-double is used if `n·n` and the sum of the `|v_i n_i|` lie between this and its inverse.
+const WINDOW: f64 = power_of_two(500);
+/// Bound of the error of component `i`: this part of `|v_i| + |n_i| Σ|v_j n_j| / (n·n)`; 2⁻⁹⁸ is proved.
+const ERROR: f64 = power_of_two(-97);
+/// ... and an absolute one for what may underflow.
+const ERROR_FLOOR: f64 = power_of_two(-800);
+
+#[inline(always)]
+fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> DVec3 {
+    let (v, n) = ([vx, vy, vz], [nx, ny, nz]);
+    let [(vn, vn_low, size), (nn, nn_low, _)] = [dot::<FMA>(v, n), dot::<FMA>(n, n)];
+    // NaN and infinity fail these comparisons
+    if (size > 1.0 / WINDOW) & (size < WINDOW) & (nn > 1.0 / WINDOW) & (nn < WINDOW) {
+        let inverse = 1.0 / nn;
+        let k = 2.0 * vn * inverse;
+        let k_low = (remainder::<FMA>(2.0 * vn, k, nn) + (2.0 * vn_low - k * nn_low)) * inverse;
+        let weight = size * inverse;
+        let (mut lower, mut upper) = ([0.0; 3], [0.0; 3]);
+        for i in 0..3 {
+            let (kn, kn_low) = two_prod::<FMA>(k, n[i]);
+            let (x, x_error) = two_diff(v[i], kn);
+            let x_low = x_error - (kn_low + k_low * n[i]);
+            // with n_i = 0 the component is v_i, and nothing has been rounded
+            let floor = if n[i] == 0.0 { 0.0 } else { ERROR_FLOOR };
+            let error = (v[i].abs() + weight * n[i].abs()) * ERROR + floor;
+            // the rounding test, for all components at once
+            lower[i] = x + (x_low - error);
+            upper[i] = x + (x_low + error);
+        }
+        if (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2]) {
+            decided(Stage::DoubleDouble);
+            return DVec3::from_array(upper);
+        }
+    }
+    rest(DVec3::new(vx, vy, vz), DVec3::new(nx, ny, nz))
+}
+
+/// The dot product as a double and a correction, and the sum of the magnitudes of its terms.
+#[inline(always)]
+fn dot<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
+    let (x, x_low) = two_prod::<FMA>(a[0], b[0]);
+    let (y, y_low) = two_prod::<FMA>(a[1], b[1]);
+    let (z, z_low) = two_prod::<FMA>(a[2], b[2]);
+    let (xy, xy_low) = two_sum(x, y);
+    let (sum, sum_low) = two_sum(xy, z);
+    (sum, (xy_low + sum_low) + ((x_low + y_low) + z_low), (x.abs() + y.abs()) + z.abs())
+}
+
+/// All that double-double does not decide.
 #[cold]
 #[inline(never)]
+fn rest(v: DVec3, n: DVec3) -> DVec3 {
+    if !(v.is_finite() && n.is_finite()) || n == DVec3::ZERO {
+        return DVec3::NAN;
+    }
+    if (0..3).all(|i| v[i] == 0.0 || n[i] == 0.0) {
+        return v + DVec3::ZERO; // perpendicular, term by term: unchanged, but for the sign of zeros
+    }
+    integers(v, n)
+}
+
+/// The last stage, exact for all finite vectors; `n` is not zero.
 fn integers(v: DVec3, n: DVec3) -> DVec3 {
+    // v_i (n·n) - 2 (v·n) n_i is below 2^3076 and a multiple of 2^-3222: 101 limbs, and 2 for the rounding
     type Number = Dyadic<104>;
+    decided(Stage::Integers);
     let [v, n] = [v, n].map(|x| x.to_array().map(Number::from_f64));
     let dot = |a: &[Number; 3], b: &[Number; 3]| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
     let (twice, nn) = (dot(&v, &n).scale(1), dot(&n, &n));
     DVec3::from_array([0, 1, 2].map(|i| Number::quotient(&(&v[i] * &nn - &twice * &n[i]), &nn)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::stage::decisions;
+    use crate::oracle::{Rng, cases, exact, is_rounding_of};
+
+    /// Checks one reflection against exact rational arithmetic, with and without FMA.
+    fn check(v: [f64; 3], n: [f64; 3]) -> DVec3 {
+        let found = kernel::<false>(v[0], v[1], v[2], n[0], n[1], n[2]);
+        let input = format!("reflect({v:?}, {n:?}) gives {found:?}");
+        for other in [kernel::<true>(v[0], v[1], v[2], n[0], n[1], n[2]), reflect(v.into(), n.into())] {
+            assert_eq!(
+                found.to_array().map(f64::to_bits),
+                other.to_array().map(f64::to_bits),
+                "{input}, {other:?}"
+            );
+        }
+        let [v, n] = [v, n].map(|x| x.map(exact));
+        let dot = |a: &[_; 3], b: &[_; 3]| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
+        let k = exact(2.0) * dot(&v, &n) / dot(&n, &n);
+        for i in 0..3 {
+            let truth = &v[i] - &k * &n[i];
+            assert!(is_rounding_of(found[i], |m| truth.cmp(m)), "{input}, wrong in component {i}");
+        }
+        found
+    }
+
+    /// Checks a class of pairs; returns how often double-double and integers decided.
+    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 2]) -> [usize; 2] {
+        let mut rng = Rng::new(seed);
+        let mut total = [0; 2];
+        for _ in 0..cases(1_000_000) {
+            let [v, n] = vectors(&mut rng);
+            if n == [0.0; 3] || !v.iter().chain(&n).all(|x| x.is_finite()) {
+                continue;
+            }
+            decisions();
+            check(v, n);
+            let [_, double_double, integers] = decisions();
+            total = [total[0] + double_double, total[1] + integers];
+        }
+        total
+    }
+
+    fn vector(rng: &mut Rng, exponents: core::ops::Range<i32>) -> [f64; 3] {
+        [0; 3].map(|_| if rng.below(10) == 0 { 0.0 } else { rng.with_exponent(exponents.clone()) })
+    }
+
+    #[test]
+    fn benign_vectors_are_decided_by_double_double() {
+        let [double_double, integers] =
+            check_class(30, |rng| [vector(rng, -4..2), [0; 3].map(|_| rng.with_exponent(-4..2))]);
+        assert!(double_double > 50 * integers, "{double_double} {integers}");
+    }
+
+    #[test]
+    fn vectors_of_any_doubles_are_reflected_correctly() {
+        let [double_double, integers] =
+            check_class(31, |rng| [[0; 3].map(|_| rng.finite()), [0; 3].map(|_| rng.finite())]);
+        assert!(double_double > 100 && integers > 10_000, "{double_double} {integers}");
+    }
+
+    #[test]
+    fn a_component_that_nearly_vanishes_is_correct() {
+        let [_, integers] = check_class(32, |rng| {
+            // a vector is mirrored twice, and then into the axes' directions: r is near (0, 0, z)
+            let mut normal = vector(rng, -4..4);
+            normal[0] += 1.0;
+            let image = reflect(DVec3::new(0.0, 0.0, rng.with_exponent(-3..3)), normal.into());
+            [image.to_array(), normal]
+        });
+        assert!(integers > 1_000, "{integers}");
+    }
+
+    #[test]
+    fn nearly_perpendicular_vectors_are_reflected_correctly() {
+        check_class(33, |rng| {
+            let n = [0; 3].map(|_| rng.with_exponent(-4..4));
+            let [x, y] = [0; 2].map(|_| rng.with_exponent(-4..4));
+            let z = -(x * n[0] + y * n[1]) / n[2];
+            [[x, y, f64::from_bits(z.to_bits() + rng.below(3) as u64)], n]
+        });
+    }
+
+    #[test]
+    fn exact_midpoints_round_to_even() {
+        let mut ties = 0;
+        let [_, integers] = check_class(34, |rng| {
+            // n = (1, 2, 2), v·n = 9 j: the image is v - 2 j n, with 54 bits and more
+            let j = i64::try_from(rng.bits() >> 12).expect("52 bits") | 1 << 51;
+            let y = i64::try_from(rng.bits() >> 11).expect("53 bits");
+            let x = (9 * j - 2 * y).rem_euclid(16);
+            let z = (9 * j - 2 * y - x) / 2;
+            let scale = 2f64.powi(rng.integer(-1000..900));
+            let image = (y - 4 * j).unsigned_abs(); // of 54 bits, if odd between two doubles
+            ties += usize::from(image >> 53 == 1 && image & 1 == 1);
+            #[expect(clippy::cast_precision_loss, reason = "53 bits by construction")]
+            let v = [x, y, z].map(|x| x as f64 * scale);
+            let normal_scale = 2f64.powi(rng.integer(-500..500));
+            [v, [1.0, 2.0, 2.0].map(|x| x * normal_scale)]
+        });
+        assert!(ties > 500 && integers > 1_000, "{ties} {integers}");
+    }
+
+    #[test]
+    fn images_around_overflow_and_underflow_round_as_they_should() {
+        let (mut infinite, mut subnormal) = (0, 0);
+        check_class(35, |rng| {
+            let range = if rng.below(2) == 0 { 1020..1024 } else { -1074..-1015 };
+            let normal_range = [-3..3, 1015..1024, -1074..-1010][rng.below(3)].clone();
+            let (v, n) = (vector(rng, range), vector(rng, normal_range));
+            let image = reflect(v.into(), n.into());
+            infinite += usize::from(image.to_array().iter().any(|x| x.is_infinite()));
+            subnormal += usize::from(image.to_array().iter().any(|x| x.is_subnormal()));
+            [v, n]
+        });
+        assert!(infinite > 100 && subnormal > 500, "{infinite} {subnormal}");
+    }
+
+    #[test]
+    fn components_of_very_different_size_are_reflected_correctly() {
+        check_class(36, |rng| {
+            let mut wild = |_| if rng.below(5) == 0 { 0.0 } else { rng.with_exponent(-260..260) };
+            [[0; 3].map(&mut wild), [0; 3].map(&mut wild)]
+        });
+    }
+
+    #[test]
+    fn special_values_in_all_combinations_are_reflected_correctly() {
+        let values = [0.0, -0.0, 1.0, -3.0, f64::from_bits(1), f64::MAX];
+        let mut vectors = vec![];
+        for x in values {
+            for y in values {
+                for z in values {
+                    vectors.push([x, y, z]);
+                }
+            }
+        }
+        for v in &vectors {
+            for n in vectors.iter().filter(|n| **n != [0.0; 3]).step_by(3) {
+                check(*v, *n);
+            }
+        }
+    }
+
+    #[test]
+    fn a_zero_normal_or_a_component_that_is_not_finite_gives_nan() {
+        let good = DVec3::new(1.0, 2.0, 3.0);
+        assert!(reflect(good, DVec3::ZERO).is_nan());
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for i in 0..3 {
+                let mut wrong = good;
+                wrong[i] = bad;
+                for image in [reflect(wrong, good), reflect(good, wrong), reflect(wrong, wrong)] {
+                    assert!(image.to_array().iter().all(|x| x.is_nan()), "{image}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_exact_zero_is_positive() {
+        let image = reflect(DVec3::new(-0.0, 1.0, -0.0), DVec3::new(0.0, -0.0, 1.0));
+        assert_eq!(image.to_array().map(f64::to_bits), [0.0, 1.0, 0.0].map(f64::to_bits));
+        let image = reflect(DVec3::new(-1.0, 0.0, -0.0), DVec3::new(1.0, 1.0, 0.0));
+        assert_eq!(image.to_array().map(f64::to_bits), [0.0, 1.0, 0.0].map(f64::to_bits));
+    }
 }

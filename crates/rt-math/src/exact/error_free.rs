@@ -59,6 +59,20 @@ pub fn two_prod<const FMA: bool>(a: f64, b: f64) -> (f64, f64) {
     (value, error)
 }
 
+/// Returns `z - x y`, rounded once, where `z` and `x y` are so close that `z - RN(x y)` is exact.
+///
+/// That is so if they agree within a factor of 2 (Sterbenz). If the result is a double, as after `x = RN(z / y)` or
+/// `x = y = RN(√z)`, it is exact. The range is that of [`two_prod`], and `FMA` means the same as there.
+#[inline(always)]
+#[must_use]
+pub fn remainder<const FMA: bool>(z: f64, x: f64, y: f64) -> f64 {
+    if FMA {
+        return (-x).mul_add(y, z);
+    }
+    let (product, error) = two_prod::<FMA>(x, y);
+    (z - product) - error
+}
+
 /// Splits a double of magnitude at most 2⁹⁹⁵ into two of at most 26 bits each, `a = high + low`.
 #[inline(always)]
 fn split(a: f64) -> (f64, f64) {

@@ -32,8 +32,17 @@ mod dyadic;
 mod error_free;
 mod fma;
 mod round;
+pub(crate) mod stage;
 
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
-pub use error_free::{fast_two_sum, two_diff, two_prod, two_sum};
+pub use error_free::{fast_two_sum, remainder, two_diff, two_prod, two_sum};
+pub use fma::has_fma;
 pub use round::round_if_certain;
+
+/// 2ᵏ, for `k` from -1022 to 1023.
+#[expect(clippy::cast_sign_loss, reason = "the biased exponent of a normal double is positive")]
+pub(crate) const fn power_of_two(k: i32) -> f64 {
+    assert!(-1022 <= k && k <= 1023, "outside the normal range");
+    f64::from_bits(((1023 + k) as u64) << 52)
+}
