@@ -1,8 +1,26 @@
 //! The report's inside test: a point is inside where it lies on the same side of all three edges.
+//!
+//! With `n = (b - a) x (c - a)`, the turns `n . (to - from) x (point - from)` over the three edges are the
+//! barycentric weights of the point's orthogonal projection into the plane, times `n . n`. Plain doubles, then
+//! double-double, then integers give their signs; the weights themselves are correctly rounded quotients.
+
+use std::cmp::Ordering;
 
 use glam::DVec3;
+use rt_math::exact::{DoubleDouble, Dyadic};
 
 use crate::Triangle;
+use crate::ray::{larger, max_abs};
+use crate::triangle::exact::{Pair, integer_cross, integer_difference, integer_dot, rounded_quotient};
+
+/// `2^-53`, the unit roundoff.
+const U: f64 = f64::EPSILON / 2.0;
+
+/// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 7).
+const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+
+/// Up to here in magnitude the differences of points may be for plain doubles and double-double: `2^200`.
+const FARTHEST: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// Where a point, projected orthogonally into a triangle's plane, lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,10 +35,11 @@ pub enum Inside {
     Outside,
 }
 
-/// Returns where a point lies, judged by its orthogonal projection into the triangle's plane.
+/// Returns where a point lies, judged by its orthogonal projection into the triangle's plane, exactly.
 ///
 /// With `n = (b - a) x (c - a)` the point is inside where none of `n . (to - from) x (point - from)` over the three
-/// edges is negative. A degenerate triangle contains nothing.
+/// edges is negative. A degenerate triangle contains nothing, and a point that is not finite lies outside. Whether the
+/// point lies in the plane is another question: [`Triangle::is_coplanar`].
 ///
 /// ```
 /// use glam::DVec3;
@@ -33,18 +52,162 @@ pub enum Inside {
 /// assert_eq!(inside_triangle(DVec3::ONE, &triangle), Inside::Outside);
 /// ```
 pub fn inside_triangle(point: DVec3, triangle: &Triangle) -> Inside {
-    let [a, b, c] = triangle.vertices();
-    let n = (b - a).cross(c - a);
-    if n == DVec3::ZERO || !point.is_finite() {
+    if !point.is_finite() {
         return Inside::Outside;
     }
-    let turns = [(a, b), (b, c), (c, a)].map(|(from, to)| n.dot((to - from).cross(point - from)));
-    if turns.iter().any(|&turn| turn < 0.0) {
+    let turns = filtered_signs(point, triangle)
+        .or_else(|| double_double_signs(point, triangle))
+        .unwrap_or_else(|| integer_signs(point, triangle));
+    if turns.contains(&Ordering::Less) {
         return Inside::Outside;
     }
-    match turns.iter().filter(|&&turn| turn == 0.0).count() {
+    match turns.iter().filter(|&&turn| turn == Ordering::Equal).count() {
         0 => Inside::Interior,
         1 => Inside::Edge,
-        _ => Inside::Vertex,
+        2 => Inside::Vertex,
+        // The turns add up to n . n, so the triangle is degenerate.
+        _ => Inside::Outside,
     }
+}
+
+impl Triangle {
+    /// Returns the weights of the three vertices at the orthogonal projection of a point into the plane, each correctly
+    /// rounded, or `None` if the triangle is degenerate or the point not finite.
+    ///
+    /// A weight is negative beyond the edge opposite its vertex; none is negative inside. Their sum is 1 but for the
+    /// rounding of each.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rt_geom::Triangle;
+    ///
+    /// let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
+    /// assert_eq!(triangle.barycentric(DVec3::new(0.25, 0.5, 9.0)), Some([0.25, 0.25, 0.5]));
+    /// ```
+    pub fn barycentric(&self, point: DVec3) -> Option<[f64; 3]> {
+        if !point.is_finite() || self.is_degenerate() {
+            return None;
+        }
+        Some(double_double_weights(point, self).unwrap_or_else(|| integer_weights(point, self)))
+    }
+
+    /// Whether a point and the three vertices lie in one plane, exactly; false if the point is not finite.
+    ///
+    /// Any point is coplanar with a degenerate triangle.
+    pub fn is_coplanar(&self, point: DVec3) -> bool {
+        point.is_finite() && coplanar(point, self)
+    }
+}
+
+/// The largest component among the edges, and among those of the point's differences from the vertices.
+fn sizes(point: DVec3, triangle: &Triangle) -> (f64, f64) {
+    let [a, b, c] = triangle.vertices();
+    let most = |x: DVec3, y: DVec3, z: DVec3| larger(max_abs(x), larger(max_abs(y), max_abs(z)));
+    (most(b - a, c - b, a - c), most(point - a, point - b, point - c))
+}
+
+/// The signs of the turns around the vertices' opposite edges, if plain doubles are sure of all.
+fn filtered_signs(point: DVec3, triangle: &Triangle) -> Option<[Ordering; 3]> {
+    let [a, b, c] = triangle.vertices();
+    let n = (b - a).cross(c - a);
+    let turn = |from: DVec3, to: DVec3| n.dot((to - from).cross(point - from));
+    let (edge, far) = sizes(point, triangle);
+    let error = 136.0 * U * (edge * edge * edge) * far + UNDERFLOW;
+    certain_signs([turn(b, c), turn(c, a), turn(a, b)], error, edge, far)
+}
+
+fn certain_signs(turns: [f64; 3], error: f64, edge: f64, far: f64) -> Option<[Ordering; 3]> {
+    let certain = edge < FARTHEST && far < FARTHEST && turns.iter().all(|turn| turn.abs() > error);
+    certain.then(|| turns.map(|turn| turn.total_cmp(&0.0)))
+}
+
+type Number = DoubleDouble<false>;
+type Numbers = [Number; 3];
+
+fn difference(p: DVec3, q: DVec3) -> Numbers {
+    [Number::difference(p.x, q.x), Number::difference(p.y, q.y), Number::difference(p.z, q.z)]
+}
+
+fn cross(v: &Numbers, w: &Numbers) -> Numbers {
+    [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]]
+}
+
+fn dot(v: &Numbers, w: &Numbers) -> Number {
+    v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
+}
+
+/// The turns and `n . n`, each within `544 u² edge³ far` and `544 u² edge⁴` (and underflow).
+fn double_double_turns(point: DVec3, triangle: &Triangle) -> ([Number; 3], Number) {
+    let [a, b, c] = triangle.vertices();
+    let n = cross(&difference(b, a), &difference(c, a));
+    let turn = |from, to| dot(&n, &cross(&difference(to, from), &difference(point, from)));
+    ([turn(b, c), turn(c, a), turn(a, b)], dot(&n, &n))
+}
+
+#[cold]
+fn double_double_signs(point: DVec3, triangle: &Triangle) -> Option<[Ordering; 3]> {
+    let (turns, _) = double_double_turns(point, triangle);
+    let (edge, far) = sizes(point, triangle);
+    let error = 544.0 * U * U * (edge * edge * edge) * far + UNDERFLOW;
+    certain_signs(turns.map(Number::high), error, edge, far)
+}
+
+fn double_double_weights(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> {
+    let (edge, far) = sizes(point, triangle);
+    if !(edge < FARTHEST && far < FARTHEST) {
+        return None;
+    }
+    let (turns, square) = double_double_turns(point, triangle);
+    let relative = 544.0 * U * U * (edge * edge * edge);
+    let pair = |x: Number| Pair { high: x.high(), low: x.low() };
+    let weight = |turn: Number| {
+        let (turn_error, square_error) = (relative * far + UNDERFLOW, relative * edge + UNDERFLOW);
+        rounded_quotient::<false>(pair(turn), turn_error, pair(square), square_error)
+    };
+    Some([weight(turns[0])?, weight(turns[1])?, weight(turns[2])?])
+}
+
+/// Limbs for the turns, of degree four: multiples of 2^-4296 below 2^4105 take 134, and their quotients two more.
+type Integer = Dyadic<136>;
+
+fn integer_turns(point: DVec3, triangle: &Triangle) -> ([Integer; 3], [Integer; 3]) {
+    let [a, b, c] = triangle.vertices();
+    let n = integer_cross(&integer_difference(b, a), &integer_difference(c, a));
+    let turn = |from, to| {
+        integer_dot(&n, &integer_cross(&integer_difference(to, from), &integer_difference(point, from)))
+    };
+    ([turn(b, c), turn(c, a), turn(a, b)], n)
+}
+
+#[cold]
+#[inline(never)]
+fn integer_signs(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
+    integer_turns(point, triangle).0.map(|turn| turn.sign())
+}
+
+#[cold]
+#[inline(never)]
+fn integer_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
+    let (turns, n) = integer_turns(point, triangle);
+    let square = integer_dot(&n, &n);
+    turns.map(|turn| Integer::quotient(&turn, &square))
+}
+
+/// The sign of the volume that the point spans with the triangle, compared with zero.
+fn coplanar(point: DVec3, triangle: &Triangle) -> bool {
+    let [a, b, c] = triangle.vertices();
+    let volume = (b - a).cross(c - a).dot(point - a);
+    let (edge, far) = sizes(point, triangle);
+    // Eight roundings per term, six terms.
+    let error = 64.0 * U * (edge * edge) * far + UNDERFLOW;
+    let off = edge < FARTHEST && far < FARTHEST && volume.abs() > error;
+    !off && integer_coplanar(point, triangle)
+}
+
+#[cold]
+#[inline(never)]
+fn integer_coplanar(point: DVec3, triangle: &Triangle) -> bool {
+    let [a, b, c] = triangle.vertices();
+    let n: [Integer; 3] = integer_cross(&integer_difference(b, a), &integer_difference(c, a));
+    integer_dot(&n, &integer_difference(point, a)).sign() == Ordering::Equal
 }

@@ -73,8 +73,27 @@ impl PreparedRay {
     }
 
     /// The range.
+    #[inline]
     pub(crate) fn within(&self) -> Range<f64> {
         self.start..self.end
+    }
+
+    /// Returns what a shape offers whose correctly rounded `t` lies between two bounds: nothing if it is surely out of
+    /// the range or beyond `limit`, the bounds if it is surely in the range, and else what `exactly` finds.
+    #[inline(always)]
+    pub(crate) fn admit(
+        &self,
+        (low, high): (f64, f64),
+        limit: f64,
+        exactly: impl FnOnce() -> Option<Candidate>,
+    ) -> Option<Candidate> {
+        if low > limit || low > self.end || high < self.start {
+            None
+        } else if low > self.start && high < self.end {
+            Some(Candidate { low, high })
+        } else {
+            exactly()
+        }
     }
 }
 
@@ -86,6 +105,13 @@ impl PreparedRay {
 pub(crate) struct Candidate {
     pub(crate) low: f64,
     pub(crate) high: f64,
+}
+
+impl Candidate {
+    /// A hit whose `t` is known, if it is not beyond `limit`.
+    pub(crate) fn exact(t: Option<f64>, limit: f64) -> Option<Self> {
+        t.filter(|&t| t <= limit).map(|t| Self { low: t, high: t })
+    }
 }
 
 /// Whether the range holds `t`: `start <= t < end` by `total_cmp`, where an infinite end is no bound.

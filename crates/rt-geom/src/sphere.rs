@@ -188,14 +188,7 @@ impl Sphere {
                 if root.high() < prepared.start {
                     root = crossing.far();
                 }
-                let (low, high) = (root.low(), root.high());
-                if low > limit || low > prepared.end || high < prepared.start {
-                    None
-                } else if low > prepared.start && high < prepared.end {
-                    Some(Candidate { low, high })
-                } else {
-                    self.exact_candidate(prepared, limit)
-                }
+                prepared.admit((root.low(), root.high()), limit, || self.exact_candidate(prepared, limit))
             }
             Line::Unsure => self.exact_candidate(prepared, limit),
         }
@@ -203,8 +196,7 @@ impl Sphere {
 
     #[cold]
     fn exact_candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let t = exact::closest(self, &prepared.ray, prepared.within())?;
-        (t <= limit).then_some(Candidate { low: t, high: t })
+        Candidate::exact(exact::closest(self, &prepared.ray, prepared.within()), limit)
     }
 
     /// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.
@@ -313,7 +305,7 @@ impl Crossing {
 }
 
 /// A power of two by which a positive number becomes about 1; at most 2^1022.
-fn power_of_two_near_inverse(x: f64) -> f64 {
+pub(crate) fn power_of_two_near_inverse(x: f64) -> f64 {
     let exponent = (x.to_bits() >> 52).min(2045);
     f64::from_bits((2046 - exponent).min(2045) << 52)
 }

@@ -66,10 +66,10 @@ fn check(origin: DVec3, direction: DVec3, center: DVec3, radius: f64, rng: &mut 
         assert!(is_correctly_rounded(t, |x| equation.compare(i == 1, x)), "root {i}: {}", context());
     }
     // every kind of end that a root can meet
-    let some = if list.is_empty() { rng.uniform() } else { list[rng.bits() as usize % list.len()] };
+    let some = if list.is_empty() { rng.uniform() } else { rng.pick(&list) };
     let ends =
         [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
-    let random = |rng: &mut Rng| ends[rng.bits() as usize % ends.len()];
+    let random = |rng: &mut Rng| rng.pick(&ends);
     let ranges =
         [0.0..f64::INFINITY, f64::from_bits(1)..f64::INFINITY, random(rng)..random(rng), random(rng)..some];
     for within in ranges {

@@ -164,9 +164,6 @@ fn double_double_roots(sphere: &Sphere, ray: &Ray) -> Option<Roots> {
 
 /// Compares the distance of a point from the center with the radius, in double-double.
 fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
-    if !(max_abs(point - sphere.center) + sphere.radius <= FARTHEST) {
-        return None;
-    }
     let w = [
         Number::difference(point.x, sphere.center.x),
         Number::difference(point.y, sphere.center.y),
@@ -175,7 +172,8 @@ fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
     let (square, radius_square) = (dot(w, w), Number::product(sphere.radius, sphere.radius));
     let excess = (square - radius_square).high();
     let error = 32.0 * U * U * (square.high() + radius_square.high()) + UNDERFLOW;
-    (excess.abs() > error).then(|| excess.total_cmp(&0.0))
+    let in_range = max_abs(point - sphere.center) + sphere.radius <= FARTHEST;
+    (in_range && excess.abs() > error).then(|| excess.total_cmp(&0.0))
 }
 
 /// Cold stages need no FMA.

@@ -191,6 +191,11 @@ impl Rng {
         i32::try_from(self.bits() % n).expect("a small range")
     }
 
+    /// One of the items.
+    pub(crate) fn pick<T: Copy>(&mut self, items: &[T]) -> T {
+        items[usize::try_from(self.bits() % items.len() as u64).expect("an index")]
+    }
+
     /// An integer from `-n` to `n`, as a double.
     pub(crate) fn small(&mut self, n: u64) -> f64 {
         f64::from(self.below(2 * n + 1)) - n as f64
@@ -241,10 +246,10 @@ impl Rng {
 
     /// The same number up to `steps` doubles up or down.
     pub(crate) fn nudge(&mut self, x: f64, steps: u64) -> f64 {
-        let steps = self.small(steps);
+        let up = self.bits() & 1 == 0;
         let mut x = x;
-        for _ in 0..steps.abs() as u64 {
-            x = if steps > 0.0 { x.next_up() } else { x.next_down() };
+        for _ in 0..self.bits() % (steps + 1) {
+            x = if up { x.next_up() } else { x.next_down() };
         }
         if x.is_finite() { x } else { f64::MAX.copysign(x) }
     }

@@ -1,0 +1,337 @@
+//! The stages after the filter: double-double and integers.
+
+use std::cmp::Ordering;
+use std::ops::Range;
+
+use glam::DVec3;
+use rt_math::exact::{Dyadic, round_if_certain, two_diff, two_prod, two_sum};
+use rt_math::fma_dispatch;
+
+use super::{FARTHEST, Triangle, U, UNDERFLOW, UNDERFLOW_T, Verdict};
+use crate::Ray;
+use crate::ray::{holds, larger, max_abs};
+
+/// A number as `high + low`; the low part is at most a few units in the last place of what `high` was summed from.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair {
+    pub(crate) high: f64,
+    pub(crate) low: f64,
+}
+
+/// A vector of pairs.
+pub(crate) type Pairs = [Pair; 3];
+
+/// `p - q`, exactly.
+#[inline(always)]
+pub(crate) fn difference(p: DVec3, q: DVec3) -> Pairs {
+    let part = |p, q| {
+        let (high, low) = two_diff(p, q);
+        Pair { high, low }
+    };
+    [part(p.x, q.x), part(p.y, q.y), part(p.z, q.z)]
+}
+
+/// The vector itself.
+#[inline(always)]
+fn pairs(v: DVec3) -> Pairs {
+    let part = |high| Pair { high, low: 0.0 };
+    [part(v.x), part(v.y), part(v.z)]
+}
+
+/// `v x w`; component `i` is off by at most `16 u² (|v_j w_k| + |v_k w_j|)`.
+#[inline(always)]
+pub(crate) fn cross<const FMA: bool>(v: &Pairs, w: &Pairs) -> Pairs {
+    let part = |j: usize, k: usize| {
+        let (p, p_low) = two_prod::<FMA>(v[j].high, w[k].high);
+        let (q, q_low) = two_prod::<FMA>(v[k].high, w[j].high);
+        let (high, error) = two_diff(p, q);
+        let crossed =
+            (v[j].high * w[k].low + v[j].low * w[k].high) - (v[k].high * w[j].low + v[k].low * w[j].high);
+        Pair { high, low: error + ((p_low - q_low) + crossed) }
+    };
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+/// `v . w` where `v` is a cross product and `w` a difference: off by at most `91 u²` times the permanent.
+#[inline(always)]
+pub(crate) fn dot<const FMA: bool>(v: &Pairs, w: &Pairs) -> Pair {
+    let part = |i: usize| {
+        let (high, low) = two_prod::<FMA>(v[i].high, w[i].high);
+        (high, low + (v[i].high * w[i].low + v[i].low * w[i].high))
+    };
+    let ((x, x_low), (y, y_low), (z, z_low)) = (part(0), part(1), part(2));
+    let (sum, e1) = two_sum(x, y);
+    let (high, e2) = two_sum(sum, z);
+    Pair { high, low: (x_low + y_low) + (z_low + (e1 + e2)) }
+}
+
+/// Returns the correctly rounded quotient, or `None` if the errors of the operands leave it open.
+///
+/// The operands are pairs with bounds of their errors, which include all underflow.
+#[inline(always)]
+pub(crate) fn rounded_quotient<const FMA: bool>(n: Pair, n_error: f64, d: Pair, d_error: f64) -> Option<f64> {
+    let t = n.high / d.high;
+    let (product, product_low) = two_prod::<FMA>(t, d.high);
+    // The remainder of a correctly rounded quotient is a double: nothing is rounded before the low parts come in.
+    let rest = ((n.high - product) - product_low) + (n.low - t * d.low);
+    let inverse = 1.0 / d.high.abs();
+    let step = rest / d.high;
+    let relative = (d.low.abs() + d_error) * inverse;
+    let low_parts = n.low.abs() + t.abs() * d.low.abs();
+    let absolute = (n_error + t.abs() * d_error + 3.0 * U * low_parts) * inverse;
+    let error = 1.2 * (absolute + step.abs() * relative) + 4.0 * U * step.abs() + UNDERFLOW_T;
+    if relative <= 0.125 { round_if_certain(t, step, error) } else { None }
+}
+
+fma_dispatch! {
+    /// Returns the correctly rounded `t`, or `None` if it takes integers. The filter must have found a hit.
+    pub(super) fn rounded_t(triangle: &Triangle, ray: &Ray) -> Option<f64> = t_kernel;
+}
+
+#[inline(always)]
+fn t_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<f64> {
+    let [a, b, c] = triangle.vertices;
+    let d = ray.direction();
+    let (e, f, from) = (difference(b, a), difference(c, a), difference(a, ray.origin()));
+    let n = cross::<FMA>(&e, &f);
+    let (height, slope) = (dot::<FMA>(&n, &from), dot::<FMA>(&n, &pairs(d)));
+    let most = |i: usize| larger(e[i].high.abs(), f[i].high.abs());
+    let size = most(0) + most(1) + most(2);
+    let relative = 64.0 * U * U * size * size;
+    let farthest = larger(from[0].high.abs(), larger(from[1].high.abs(), from[2].high.abs()));
+    let height_error = relative * farthest + UNDERFLOW;
+    let slope_error = relative * max_abs(d) + UNDERFLOW;
+    rounded_quotient::<FMA>(height, height_error, slope, slope_error)
+}
+
+fma_dispatch! {
+    /// Returns the correctly rounded weights, or `None` if they take integers. The filter must have found a hit.
+    pub(super) fn rounded_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> = weights_kernel;
+}
+
+#[inline(always)]
+fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+    let (volumes, error) = volumes::<FMA>(triangle, ray)?;
+    let [u, v, w] = volumes;
+    let (sum, e1) = two_sum(u.high, v.high);
+    let (high, e2) = two_sum(sum, w.high);
+    let low = (u.low + v.low) + (w.low + (e1 + e2));
+    let sum = Pair { high, low };
+    // Three times the error of a volume, and the roundings of the low part.
+    let sum_error = 5.0 * error;
+    Some([
+        rounded_quotient::<FMA>(u, error, sum, sum_error)?,
+        rounded_quotient::<FMA>(v, error, sum, sum_error)?,
+        rounded_quotient::<FMA>(w, error, sum, sum_error)?,
+    ])
+}
+
+/// The three volumes with one bound of their errors; `None` out of the range where the bound holds.
+#[inline(always)]
+fn volumes<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<([Pair; 3], f64)> {
+    let d = ray.direction();
+    let [a, b, c] = triangle.vertices.map(|vertex| difference(vertex, ray.origin()));
+    let most = |i: usize| larger(a[i].high.abs(), larger(b[i].high.abs(), c[i].high.abs()));
+    let size = most(0) + most(1) + most(2);
+    let reach = max_abs(d);
+    let in_range = size < FARTHEST && (1e-30..=1e30).contains(&reach);
+    let error = 64.0 * U * U * reach * size * size + UNDERFLOW;
+    let beside_a = cross::<FMA>(&pairs(d), &a);
+    let beside_b = cross::<FMA>(&pairs(d), &b);
+    let u = dot::<FMA>(&beside_b, &c);
+    let v = dot::<FMA>(&beside_a, &c);
+    let w = dot::<FMA>(&beside_a, &b);
+    in_range.then_some(([u, Pair { high: -v.high, low: -v.low }, w], error))
+}
+
+/// Returns the hit's `t` if it is in the range, whatever it takes.
+#[cold]
+#[inline(never)]
+pub(super) fn closest(triangle: &Triangle, ray: &Ray, within: Range<f64>) -> Option<f64> {
+    let t = line_verdict(triangle, ray).is_hit().then(|| integer_t(triangle, ray))?;
+    holds(&within, t).then_some(t)
+}
+
+/// Returns how the whole line meets the triangle, whatever it takes.
+#[cold]
+#[inline(never)]
+pub(super) fn line_verdict(triangle: &Triangle, ray: &Ray) -> Verdict {
+    let signs = double_double_signs(triangle, ray).unwrap_or_else(|| Volumes::new(triangle, ray).signs());
+    verdict(signs)
+        .unwrap_or_else(|| if is_degenerate(triangle) { Verdict::Degenerate } else { Verdict::Parallel })
+}
+
+/// The verdict from the signs of the volumes and of their sum; `None` if the sum is zero.
+fn verdict(signs: [Ordering; 4]) -> Option<Verdict> {
+    let [corners @ .., sum] = signs;
+    if sum == Ordering::Equal {
+        return None;
+    }
+    if corners.contains(&sum.reverse()) {
+        return Some(Verdict::Miss);
+    }
+    Some(match corners.map(|sign| sign == Ordering::Equal) {
+        [false, false, false] => Verdict::Interior,
+        [false, false, true] => Verdict::Edge(0),
+        [true, false, false] => Verdict::Edge(1),
+        [false, true, false] => Verdict::Edge(2),
+        [false, true, true] => Verdict::Vertex(0),
+        [true, false, true] => Verdict::Vertex(1),
+        // Not all three, since their sum is not zero.
+        [true, true, _] => Verdict::Vertex(2),
+    })
+}
+
+/// The signs of the volumes and of their sum, in double-double, if all are certain.
+fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> {
+    let ([u, v, w], error) = volumes::<false>(triangle, ray)?;
+    let [u, v, w] = [u, v, w].map(|volume| volume.high + volume.low);
+    // One rounding more per volume, three for the sum.
+    let sum = u + v + w;
+    let certain = |x: f64, bound: f64| (x.abs() > bound).then(|| x.total_cmp(&0.0));
+    let sum_error = 4.0 * U * (u.abs() + v.abs() + w.abs()) + 4.0 * error;
+    let error = 2.0 * error;
+    Some([certain(u, error)?, certain(v, error)?, certain(w, error)?, certain(sum, sum_error)?])
+}
+
+/// Limbs for what a ray and a triangle span, of degree three: multiples of 2^-3222 below 2^3079 take 101, and their
+/// quotients two more.
+type Integer = Dyadic<104>;
+type IntegerVector = [Integer; 3];
+
+/// The exact volumes, with what they come from.
+struct Volumes {
+    /// The vertices relative to the origin of the ray.
+    vertices: [IntegerVector; 3],
+    /// `b x c`, `c x a`, `a x b`.
+    planes: [IntegerVector; 3],
+    /// `u`, `v`, `w`.
+    volumes: [Integer; 3],
+}
+
+impl Volumes {
+    fn new(triangle: &Triangle, ray: &Ray) -> Self {
+        let direction = ray.direction().to_array().map(Integer::from_f64);
+        let vertices = triangle.vertices.map(|vertex| integer_difference(vertex, ray.origin()));
+        let [a, b, c] = &vertices;
+        let planes = [integer_cross(b, c), integer_cross(c, a), integer_cross(a, b)];
+        let volumes = [0, 1, 2].map(|i| integer_dot(&planes[i], &direction));
+        Self { vertices, planes, volumes }
+    }
+
+    fn sum(&self) -> Integer {
+        &self.volumes[0] + &self.volumes[1] + &self.volumes[2]
+    }
+
+    fn signs(&self) -> [Ordering; 4] {
+        let [u, v, w] = &self.volumes;
+        [u.sign(), v.sign(), w.sign(), self.sum().sign()]
+    }
+
+    /// `(b - a) x (c - a)`: the sum of the three planes' normals.
+    fn normal(&self) -> IntegerVector {
+        let [p, q, r] = &self.planes;
+        [0, 1, 2].map(|i| &p[i] + &q[i] + &r[i])
+    }
+
+    /// Six times the volume that the triangle spans with the origin of the ray: `a . b x c`.
+    fn height(&self) -> Integer {
+        integer_dot(&self.planes[0], &self.vertices[0])
+    }
+}
+
+/// Returns the correctly rounded `t` where the line meets the plane; the line must not be parallel to it.
+#[cold]
+#[inline(never)]
+pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
+    let volumes = Volumes::new(triangle, ray);
+    Integer::quotient(&volumes.height(), &volumes.sum())
+}
+
+/// Returns the correctly rounded weights if the line meets the triangle.
+#[cold]
+#[inline(never)]
+pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+    let volumes = Volumes::new(triangle, ray);
+    let sum = volumes.sum();
+    verdict(volumes.signs())?.is_hit().then(|| volumes.volumes.map(|volume| Integer::quotient(&volume, &sum)))
+}
+
+/// Whether the turned ray crosses the triangle: [`Triangle::crosses`], whatever it takes.
+#[cold]
+#[inline(never)]
+pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
+    let volumes = Volumes::new(triangle, ray);
+    // The sign of (d + (e, e², e³)) . v for an infinitely small e > 0.
+    let turned = |volume: &Integer, v: &IntegerVector| {
+        [volume, &v[0], &v[1], &v[2]].map(Integer::sign).into_iter().fold(Ordering::Equal, Ordering::then)
+    };
+    let height = volumes.height().sign();
+    let slope = turned(&volumes.sum(), &volumes.normal());
+    // Height zero: the origin is in the plane, or there is no plane.
+    height != Ordering::Equal
+        && height == slope
+        && (0..3).all(|i| turned(&volumes.volumes[i], &volumes.planes[i]) == slope)
+}
+
+/// Limbs for the normal, of degree two: a multiple of 2^-2148 below 2^2052.
+type NormalInteger = Dyadic<68>;
+
+fn integer_normal(triangle: &Triangle) -> [NormalInteger; 3] {
+    let [a, b, c] = triangle.vertices;
+    integer_cross(&integer_difference(b, a), &integer_difference(c, a))
+}
+
+/// Whether the triangle has no area, in integers.
+#[cold]
+#[inline(never)]
+pub(crate) fn is_degenerate(triangle: &Triangle) -> bool {
+    integer_normal(triangle).iter().all(|part| part.sign() == Ordering::Equal)
+}
+
+/// Returns `(b - a) x (c - a)` times a power of two, with a largest component near 1, or `None` if it is zero.
+///
+/// Each component is off by at most `1.01 u` of the largest.
+pub(super) fn scaled_normal(triangle: &Triangle) -> Option<DVec3> {
+    let [a, b, c] = triangle.vertices;
+    let (e, f) = (difference(b, a), difference(c, a));
+    let n = DVec3::from_array(cross::<false>(&e, &f).map(|part| part.high + part.low));
+    let largest = larger(max_abs(b - a), max_abs(c - a));
+    // Here the error of the pairs, 32 u² largest², is below 2^-61 of the normal.
+    let certain = (1e-70..=1e70).contains(&largest) && max_abs(n) >= 1e-12 * largest * largest;
+    let n = if certain { n } else { integer_scaled_normal(triangle)? };
+    Some(n * crate::sphere::power_of_two_near_inverse(max_abs(n)))
+}
+
+#[cold]
+fn integer_scaled_normal(triangle: &Triangle) -> Option<DVec3> {
+    let n = integer_normal(triangle);
+    let rounded = |k: i32| DVec3::from_array([0, 1, 2].map(|i| n[i].scale(k).to_f64()));
+    // The largest component lies between 2^-2148 and 2^2052: one of three scales puts it well inside the range.
+    let inside = |v: &DVec3| (1e-150..=1e150).contains(&max_abs(*v));
+    match rounded(0) {
+        v if inside(&v) => Some(v),
+        _ if n.iter().all(|part| part.sign() == Ordering::Equal) => None,
+        v if max_abs(v) > 1.0 => Some(rounded(-1250)),
+        _ => Some(rounded(1300)),
+    }
+}
+
+pub(crate) fn integer_difference<const LIMBS: usize>(p: DVec3, q: DVec3) -> [Dyadic<LIMBS>; 3] {
+    [0, 1, 2].map(|i| Dyadic::from_f64(p[i]) - Dyadic::from_f64(q[i]))
+}
+
+pub(crate) fn integer_cross<const LIMBS: usize>(
+    v: &[Dyadic<LIMBS>; 3],
+    w: &[Dyadic<LIMBS>; 3],
+) -> [Dyadic<LIMBS>; 3] {
+    let part = |j: usize, k: usize| &v[j] * &w[k] - &v[k] * &w[j];
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+pub(crate) fn integer_dot<const LIMBS: usize>(
+    v: &[Dyadic<LIMBS>; 3],
+    w: &[Dyadic<LIMBS>; 3],
+) -> Dyadic<LIMBS> {
+    &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
+}

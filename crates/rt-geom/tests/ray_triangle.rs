@@ -1,0 +1,348 @@
+//! How a ray meets a triangle is exact, and `t` and the barycentric weights of the hit are correctly rounded, for every
+//! finite input.
+
+mod reference;
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use reference::{
+    Exact, Rng, Vector, cases, cross, dot, holds, is_rounded_quotient, minus, scale_vector, vector,
+};
+use rt_geom::{Ray, Triangle, Verdict};
+
+/// The sign of the first number that is not zero.
+fn leading(numbers: &[&Exact]) -> Ordering {
+    numbers.iter().map(|x| x.sign()).find(|&sign| sign != Ordering::Equal).unwrap_or(Ordering::Equal)
+}
+
+/// Everything about a line and a triangle, exactly.
+struct Truth {
+    volumes: [Exact; 3],
+    /// `t = height / slope`
+    height: Exact,
+    slope: Exact,
+    line: Verdict,
+    crosses: bool,
+}
+
+impl Truth {
+    fn new(ray: &Ray, triangle: &Triangle) -> Self {
+        let (o, d) = (vector(ray.origin()), vector(ray.direction()));
+        let [a, b, c] = triangle.vertices().map(|v| minus(&vector(v), &o));
+        // Each volume from its own edge, as direction . (p x q); the plane from the edges.
+        let volumes = [(&b, &c), (&c, &a), (&a, &b)].map(|(p, q)| dot(&d, &cross(p, q)));
+        let n = cross(&minus(&b, &a), &minus(&c, &a));
+        let (height, slope) = (dot(&n, &a), dot(&n, &d));
+        let zero = n.iter().all(|x| x.sign() == Ordering::Equal);
+        let signs = [0, 1, 2].map(|i| volumes[i].sign());
+        let line = if zero {
+            Verdict::Degenerate
+        } else if slope.sign() == Ordering::Equal {
+            Verdict::Parallel
+        } else if signs.contains(&Ordering::Less) && signs.contains(&Ordering::Greater) {
+            Verdict::Miss
+        } else {
+            // Volume i belongs to the edge opposite vertex i: from i + 1 to i + 2.
+            let zeros: Vec<usize> = (0..3).filter(|&i| signs[i] == Ordering::Equal).collect();
+            match zeros[..] {
+                [] => Verdict::Interior,
+                [i] => Verdict::Edge((i + 1) % 3),
+                [i, j] => Verdict::Vertex(3 - i - j),
+                _ => unreachable!("their sum is not zero"),
+            }
+        };
+        let turned = |x: &Exact, v: &Vector| leading(&[x, &v[0], &v[1], &v[2]]);
+        let turned_slope = turned(&slope, &n);
+        let edges = [(&b, &c), (&c, &a), (&a, &b)];
+        let crosses = height.sign() != Ordering::Equal
+            && height.sign() == turned_slope
+            && (0..3).all(|i| turned(&volumes[i], &cross(edges[i].0, edges[i].1)) == turned_slope);
+        Self { volumes, height, slope, line, crosses }
+    }
+
+    /// Whether the ray, from its origin on, hits.
+    fn ahead(&self) -> bool {
+        self.height.sign() == Ordering::Equal || self.height.sign() == self.slope.sign()
+    }
+}
+
+fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Rng) -> Option<Verdict> {
+    let (ray, triangle) = (Ray::new(origin, direction)?, Triangle::new(a, b, c)?);
+    let truth = Truth::new(&ray, &triangle);
+    let context = || format!("{ray:?} {triangle:?}");
+
+    let hit = truth.line.is_hit();
+    let expected = if hit && !truth.ahead() { Verdict::Miss } else { truth.line };
+    assert_eq!(triangle.verdict(&ray), expected, "{}", context());
+    assert_eq!(triangle.crosses(&ray), truth.crosses, "{}", context());
+    assert_eq!(triangle.is_degenerate(), truth.line == Verdict::Degenerate, "{}", context());
+
+    let whole = triangle.closest(&ray, f64::NEG_INFINITY..f64::INFINITY);
+    assert_eq!(whole.is_some(), hit, "{}", context());
+    if let Some(t) = whole {
+        assert!(is_rounded_quotient(t, &truth.height, &truth.slope), "t = {t:e}: {}", context());
+    }
+    let some = whole.unwrap_or(0.5);
+    let ends =
+        [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
+    let ranges = [
+        0.0..f64::INFINITY,
+        f64::from_bits(1)..f64::INFINITY,
+        rng.pick(&ends)..rng.pick(&ends),
+        rng.pick(&ends)..some,
+    ];
+    for within in ranges {
+        let expected = whole.filter(|&t| holds(&within, t));
+        let found = triangle.closest(&ray, within.clone());
+        let same = expected.map(f64::to_bits) == found.map(f64::to_bits);
+        assert!(same, "expected {expected:?}, found {found:?} in {within:?}: {}", context());
+        assert_eq!(triangle.any(&ray, within.clone()), found.is_some(), "{within:?}: {}", context());
+    }
+    let weights = triangle.hit_barycentric(&ray);
+    assert_eq!(weights.is_some(), hit, "{}", context());
+    if let Some(weights) = weights {
+        for i in 0..3 {
+            let right = is_rounded_quotient(weights[i], &truth.volumes[i], &truth.slope);
+            assert!(right, "weights {weights:?}: {}", context());
+        }
+    }
+    Some(expected)
+}
+
+#[derive(Default, Debug)]
+struct Counts {
+    miss: usize,
+    interior: usize,
+    edge: usize,
+    vertex: usize,
+    parallel: usize,
+    degenerate: usize,
+}
+
+fn run(seed: u64, mut case: impl FnMut(&mut Rng) -> (DVec3, DVec3, [DVec3; 3])) -> Counts {
+    let mut rng = Rng::new(seed);
+    let mut counts = Counts::default();
+    for _ in 0..cases() {
+        let (origin, direction, vertices) = case(&mut rng);
+        match check(origin, direction, vertices, &mut rng) {
+            Some(Verdict::Miss) => counts.miss += 1,
+            Some(Verdict::Interior) => counts.interior += 1,
+            Some(Verdict::Edge(_)) => counts.edge += 1,
+            Some(Verdict::Vertex(_)) => counts.vertex += 1,
+            Some(Verdict::Parallel) => counts.parallel += 1,
+            Some(Verdict::Degenerate) => counts.degenerate += 1,
+            None => {}
+        }
+    }
+    counts
+}
+
+fn triangle(rng: &mut Rng) -> [DVec3; 3] {
+    [rng.vector(), rng.vector(), rng.vector()]
+}
+
+/// A point of the triangle's plane, most often near the triangle.
+fn aim(rng: &mut Rng, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (v, w) = (0.7 * rng.uniform() + 0.4, 0.7 * rng.uniform() + 0.4);
+    a + v * (b - a) + w * (c - a)
+}
+
+#[test]
+fn benign() {
+    let counts = run(1, |rng| {
+        let vertices = triangle(rng);
+        let origin = 3.0 * rng.vector();
+        (origin, aim(rng, vertices) - origin, vertices)
+    });
+    assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
+}
+
+/// Small integer coordinates: the ray through a point of an edge, a vertex or the interior, exactly or nudged.
+#[test]
+fn through_edges_and_vertices() {
+    let counts = run(2, |rng| {
+        let vertices = [0; 3].map(|_| 12.0 * rng.small_vector(50));
+        let i = rng.below(3) as usize;
+        let (a, b, c) = (vertices[i], vertices[(i + 1) % 3], vertices[(i + 2) % 3]);
+        let s = f64::from(rng.below(13)) / 12.0;
+        let target = match rng.below(4) {
+            0 => a,
+            1 | 2 => a + s * (b - a),
+            _ => a + (b - a) / 3.0 + (c - a) / 4.0,
+        };
+        let direction = rng.small_vector(100);
+        let origin = target - rng.small(100) * direction;
+        let k = rng.below(80) - 40;
+        let nudge = u64::from(rng.bits() & 3 == 0);
+        let (origin, direction) = (rng.nudge_vector(origin, nudge), rng.nudge_vector(direction, nudge));
+        (scale_vector(origin, k), direction, vertices.map(|v| scale_vector(v, k)))
+    });
+    assert!(counts.edge > 1000 && counts.vertex > 1000 && counts.interior > 1000, "{counts:?}");
+}
+
+/// Rounding decides on which side of an edge the line passes.
+#[test]
+fn within_a_rounding_error_of_an_edge() {
+    let counts = run(3, |rng| {
+        let vertices = triangle(rng);
+        let s = rng.uniform().abs() * 1.1 - 0.05;
+        let target = vertices[0] + s * (vertices[1] - vertices[0]);
+        let origin = rng.vector_with_exponent(0..20);
+        (origin, target - origin, vertices)
+    });
+    assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
+}
+
+#[test]
+fn slivers() {
+    let counts = run(4, |rng| {
+        let (a, along) = (rng.vector(), rng.vector());
+        let b = a + along;
+        let c = a + rng.uniform() * along + rng.vector() * 2f64.powi(-rng.below(60));
+        let vertices = [a, b, if rng.bits() & 3 == 0 { rng.nudge_vector(a, 3) } else { c }];
+        let origin = 3.0 * rng.vector();
+        (origin, aim(rng, vertices) - origin, vertices)
+    });
+    assert!(counts.miss > 1000 && counts.interior > 500, "{counts:?}");
+}
+
+#[test]
+fn without_area() {
+    let counts = run(5, |rng| {
+        let (a, along) = (rng.small_vector(100), rng.small_vector(10));
+        let vertices = [a, a + rng.small(10) * along, a + rng.small(10) * along];
+        let origin = rng.small_vector(100);
+        (origin, vertices[rng.below(3) as usize] - origin, vertices)
+    });
+    assert!(counts.degenerate > 1000, "{counts:?}");
+}
+
+/// The report's plane form does not exist for these.
+#[test]
+fn planes_through_the_origin() {
+    let counts = run(6, |rng| {
+        let (e, f) = (rng.small_vector(10), rng.small_vector(10));
+        let vertices = [0; 3].map(|_| rng.small(10) * e + rng.small(10) * f);
+        let origin = if rng.bits() & 1 == 0 { DVec3::ZERO } else { rng.small_vector(10) };
+        (origin, (vertices[0] + vertices[1] + vertices[2]) / 3.0 - origin + rng.small_vector(2), vertices)
+    });
+    assert!(counts.interior > 1000 && counts.parallel > 20, "{counts:?}");
+}
+
+#[test]
+fn along_the_plane_or_nearly() {
+    let counts = run(7, |rng| {
+        let vertices = [0; 3].map(|_| 6.0 * rng.small_vector(30));
+        let [a, b, c] = vertices;
+        let inside = rng.small(6) / 6.0 * (b - a) + rng.small(6) / 6.0 * (c - a);
+        let mut direction = rng.small(6) * (b - a) + rng.small(6) * (c - a);
+        let mut origin = a + inside - direction;
+        match rng.below(4) {
+            0 => origin = rng.nudge_vector(origin, 1),
+            1 => direction = rng.nudge_vector(direction, 1),
+            2 => origin += rng.small_vector(1),
+            _ => {}
+        }
+        (origin, direction, vertices)
+    });
+    assert!(counts.parallel > 1000 && counts.miss > 1000, "{counts:?}");
+}
+
+#[test]
+fn small_and_far() {
+    let counts = run(8, |rng| {
+        let place = rng.vector() * 10f64.powi(rng.below(12));
+        let vertices = triangle(rng).map(|v| place + v);
+        let origin = rng.vector();
+        (origin, (aim(rng, vertices) - origin) * rng.with_exponent(-40..40), vertices)
+    });
+    assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
+}
+
+#[test]
+fn every_exponent() {
+    run(9, |rng| (rng.finite_vector(), rng.finite_vector(), [0; 3].map(|_| rng.finite_vector())));
+    run(10, |rng| {
+        // one huge or tiny number in a plain triangle
+        let mut vertices = triangle(rng);
+        let (mut origin, mut direction) = (rng.vector(), rng.vector());
+        let (at, axis) = (rng.below(5) as usize, rng.below(3) as usize);
+        let odd = rng.finite();
+        match at {
+            0 => origin[axis] = odd,
+            1 => direction[axis] = odd,
+            i => vertices[i - 2][axis] = odd,
+        }
+        (origin, direction, vertices)
+    });
+}
+
+#[test]
+fn scenes_scaled_to_the_ends_of_the_range() {
+    let counts = run(11, |rng| {
+        let (k, l) = (rng.below(2090) - 1070, rng.below(2090) - 1070);
+        let vertices =
+            if rng.bits() & 1 == 0 { triangle(rng) } else { [0; 3].map(|_| rng.small_vector(3) / 2.0) };
+        let origin = rng.small_vector(8) / 4.0;
+        let target = if rng.bits() & 1 == 0 { vertices[0] } else { aim(rng, vertices) };
+        (scale_vector(origin, k), scale_vector(target - origin, l), vertices.map(|v| scale_vector(v, k)))
+    });
+    assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
+}
+
+/// Heights over slopes that are powers of two, a bit too long for a double.
+#[test]
+fn t_halfway_between_doubles() {
+    run(12, |rng| {
+        let z = rng.with_exponent(0..3);
+        let origin = DVec3::new(0.0, 0.0, rng.with_exponent(-4..6));
+        let vertices = [DVec3::new(-1.0, -1.0, z), DVec3::new(3.0, -1.0, z), DVec3::new(-1.0, 3.0, z)];
+        let turn = rng.below(3) as usize;
+        let turned = |v: DVec3| DVec3::from_array([0, 1, 2].map(|i| v[(i + turn) % 3]));
+        (turned(origin), turned(DVec3::new(0.0, 0.0, rng.pick(&[1.0, -2.0, 0.25]))), vertices.map(turned))
+    });
+}
+
+#[test]
+fn origin_in_the_triangle() {
+    let counts = run(13, |rng| {
+        let vertices = [0; 3].map(|_| 12.0 * rng.small_vector(20));
+        let [a, b, c] = vertices;
+        let (v, w) = (f64::from(rng.below(7)) / 6.0, f64::from(rng.below(5)) / 4.0);
+        let origin = a + v * (b - a) + w * (c - a);
+        (if rng.bits() & 1 == 0 { origin } else { rng.nudge_vector(origin, 1) }, rng.vector(), vertices)
+    });
+    assert!(counts.interior > 1000 && counts.edge > 100, "{counts:?}");
+}
+
+#[test]
+fn normals_are_unit_vectors_at_right_angles_to_the_edges() {
+    const U: f64 = f64::EPSILON / 2.0;
+    let mut rng = Rng::new(14);
+    for i in 0..cases() {
+        let [a, b, mut c] = triangle(&mut rng);
+        if i % 2 == 0 {
+            // a sliver, down to a rounding error
+            c = a + rng.uniform() * (b - a) + 2f64.powi(-rng.below(60)) * rng.vector();
+        }
+        let k = rng.below(2090) - 1068;
+        let [a, b, c] = [a, b, c].map(|v| scale_vector(v, k));
+        let triangle = Triangle::new(a, b, c).unwrap();
+        let [a, b, c] = [a, b, c].map(vector);
+        let exact_normal = cross(&minus(&b, &a), &minus(&c, &a));
+        let Some(normal) = triangle.normal() else {
+            assert!(exact_normal.iter().all(|x| x.sign() == Ordering::Equal), "{triangle:?}");
+            continue;
+        };
+        // |normal x n| <= 4.1 u |n|, and normal . n > 0
+        let normal = vector(normal);
+        let (off, bound) = (cross(&normal, &exact_normal), reference::exact(4.1 * U));
+        let limit = &(&bound * &bound) * &dot(&exact_normal, &exact_normal);
+        assert!(dot(&off, &off).cmp(&limit) != Ordering::Greater, "{triangle:?}");
+        assert_eq!(dot(&normal, &exact_normal).sign(), Ordering::Greater, "{triangle:?}");
+        let excess = &dot(&normal, &normal) - &reference::exact(1.0);
+        let limit = reference::exact(8.3 * U);
+        assert!(excess.cmp(&limit) == Ordering::Less && (-&excess).cmp(&limit) == Ordering::Less);
+    }
+}
