@@ -7,7 +7,8 @@ use glam::DVec3;
 
 /// Returns the colour at the point with these barycentric coordinates, `colors[i]` being the colour of vertex `i`.
 ///
-/// The weights need not sum to one; the error is at most 3 ulp of the largest product in each channel (tested).
+/// The weights need not sum to one; in each channel the error is at most
+/// `4 f64::EPSILON` times the largest product (three products and two sums, each rounded).
 ///
 /// ```
 /// use glam::DVec3;
@@ -48,4 +49,89 @@ pub fn to_sample(c: f64, maxval: u16) -> u16 {
 /// Returns `c` brought into `0..=1`; NaN becomes 0, which `f64::clamp` would keep.
 pub(crate) fn clamp_channel(c: f64) -> f64 {
     if c > 0.0 { c.min(1.0) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_vertex_has_its_own_color(colors in prop::array::uniform3(prop::array::uniform3(0.0f64..1.0)), i in 0usize..3) {
+            let colors = colors.map(DVec3::from_array);
+            let mut weights = [0.0; 3];
+            weights[i] = 1.0;
+            prop_assert_eq!(interpolate(&colors, weights), colors[i]);
+        }
+
+        #[test]
+        fn a_mixture_stays_between_its_colors(
+            colors in prop::array::uniform3(prop::array::uniform3(0.0f64..1.0)),
+            a in 0.0f64..1.0,
+            b in 0.0f64..1.0,
+        ) {
+            let colors = colors.map(DVec3::from_array);
+            let (a, b) = if a + b > 1.0 { (1.0 - a, 1.0 - b) } else { (a, b) };
+            let mixture = interpolate(&colors, [a, b, 1.0 - a - b]);
+            let lowest = colors[0].min(colors[1]).min(colors[2]);
+            let highest = colors[0].max(colors[1]).max(colors[2]);
+            // Three products and two sums of numbers up to 1, and weights that sum to 1 within one more rounding.
+            let slack = DVec3::splat(4.0 * f64::EPSILON);
+            prop_assert!(mixture.cmpge(lowest - slack).all() && mixture.cmple(highest + slack).all(), "{}", mixture);
+        }
+
+        #[test]
+        fn a_mixture_is_within_four_ulp_of_its_largest_product(
+            c in prop::array::uniform3(-1.0f64..1.0),
+            w in prop::array::uniform3(-2.0f64..2.0),
+        ) {
+            use crate::reference::big;
+            let exact = big(c[0]) * big(w[0]) + big(c[1]) * big(w[1]) + big(c[2]) * big(w[2]);
+            let mixture = interpolate(&c.map(DVec3::splat), w).x;
+            let error = (big(mixture) - exact).to_f64().value().abs();
+            let largest = c.iter().zip(&w).map(|(c, w)| (c * w).abs()).fold(0.0, f64::max);
+            prop_assert!(error <= 4.0 * f64::EPSILON * largest, "{} is {:e} away", mixture, error);
+        }
+
+        #[test]
+        fn a_sample_is_never_above_maxval(bits in any::<u64>(), maxval in 1u16..) {
+            prop_assert!(to_sample(f64::from_bits(bits), maxval) <= maxval);
+        }
+
+        #[test]
+        fn a_brighter_channel_has_no_darker_sample(a in -0.5f64..1.5, b in -0.5f64..1.5, maxval in 1u16..) {
+            prop_assert!(to_sample(a.min(b), maxval) <= to_sample(a.max(b), maxval));
+        }
+    }
+
+    #[test]
+    fn every_sample_comes_back_from_its_channel() {
+        for maxval in (1..=1024).chain([4095, 32767, 65534, 65535]) {
+            for sample in 0..=maxval {
+                let channel = f64::from(sample) / f64::from(maxval);
+                assert_eq!(to_sample(channel, maxval), sample, "of {maxval}");
+            }
+        }
+    }
+
+    #[test]
+    fn samples_round_half_up_and_bad_channels_are_black() {
+        assert_eq!(to_sample(0.5, 255), 128);
+        assert_eq!(to_sample(0.5, 65535), 32768);
+        assert_eq!(to_sample(0.5, 1), 1);
+        assert_eq!(to_sample(0.499, 1), 0);
+        for (channel, sample) in [
+            (f64::NAN, 0),
+            (-f64::NAN, 0),
+            (f64::NEG_INFINITY, 0),
+            (-0.0, 0),
+            (f64::INFINITY, 255),
+            (1.0000001, 255),
+        ] {
+            assert_eq!(to_sample(channel, 255), sample, "{channel}");
+        }
+        assert_eq!(clamp(DVec3::new(f64::NAN, -1.0, f64::INFINITY)), DVec3::new(0.0, 0.0, 1.0));
+    }
 }

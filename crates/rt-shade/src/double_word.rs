@@ -32,15 +32,6 @@ pub(crate) fn fast_two_sum(a: f64, b: f64) -> DoubleWord {
     DoubleWord { hi, lo: b - (hi - a) }
 }
 
-/// Returns `a - b` exactly (Knuth).
-#[inline]
-pub(crate) fn two_diff(a: f64, b: f64) -> DoubleWord {
-    let hi = a - b;
-    let from_a = hi + b;
-    let from_b = hi - from_a;
-    DoubleWord { hi, lo: (a - from_a) - (b + from_b) }
-}
-
 /// Returns `a b` within `2^-76 |a b|`.
 #[inline]
 pub(crate) fn product(a: f64, b: f64) -> DoubleWord {
@@ -49,13 +40,22 @@ pub(crate) fn product(a: f64, b: f64) -> DoubleWord {
     DoubleWord { hi, lo: ((a_top * b_top - hi) + (a_top * b_rest + a_rest * b_top)) + a_rest * b_rest }
 }
 
-/// Returns `n / d` within `2^-74 |n / d|`, for words whose low part is at most 8 ulp of the high one.
+/// A quotient as `top + rest`, where `top` has 26 bits, beside that sum rounded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quotient {
+    pub(crate) top: f64,
+    pub(crate) rest: f64,
+    pub(crate) rounded: f64,
+}
+
+/// Returns `n / d`, with a relative error below 2^-74, if the low words are at most 2 ulp of the high ones.
 #[inline]
-pub(crate) fn quotient(n: DoubleWord, d: DoubleWord) -> DoubleWord {
+pub(crate) fn quotient(n: DoubleWord, d: DoubleWord) -> Quotient {
     let inverse = 1.0 / d.hi;
-    let hi = n.hi * inverse;
-    // The remainder n.hi - hi d.hi: the first difference is exact, since both are within a factor of two.
-    let ((hi_top, hi_rest), (d_top, d_rest)) = (split(hi), split(d.hi));
-    let remainder = ((n.hi - hi_top * d_top) - (hi_top * d_rest + hi_rest * d_top)) - hi_rest * d_rest;
-    DoubleWord { hi, lo: (remainder + (n.lo - hi * d.lo)) * inverse }
+    let top = split(n.hi * inverse).0;
+    // n - top d: the products are exact, and so is the first difference, of two nearly equal numbers.
+    let (d_top, d_rest) = split(d.hi);
+    let remainder = ((n.hi - top * d_top) - top * d_rest) + (n.lo - top * d.lo);
+    let rest = remainder * inverse;
+    Quotient { top, rest, rounded: top + rest }
 }

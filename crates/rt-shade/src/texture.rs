@@ -122,3 +122,121 @@ fn wrap(u: f64) -> f64 {
 fn whole(x: f64) -> usize {
     x as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A texture whose texel (column, row) has the samples (column, row, column + row).
+    fn ramp(width: usize, height: usize) -> Texture {
+        let samples = (0..height)
+            .flat_map(|row| (0..width).flat_map(move |column| [column, row, column + row]))
+            .map(|sample| u16::try_from(sample).expect("a small texture"));
+        Texture::new(width, height, samples.collect(), u16::MAX).expect("the samples fit")
+    }
+
+    fn texel_of(color: DVec3) -> (f64, f64) {
+        (color.x * f64::from(u16::MAX), color.y * f64::from(u16::MAX))
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused() {
+        assert!(Texture::new(2, 1, vec![0, 1, 2, 3, 4, 5], 5).is_some());
+        assert_eq!(Texture::new(2, 1, vec![0, 1, 2, 3, 4, 6], 5), None, "a sample above maxval");
+        assert_eq!(Texture::new(2, 1, vec![0; 5], 5), None, "a sample too few");
+        assert_eq!(Texture::new(2, 1, vec![0; 7], 5), None, "a sample too many");
+        assert_eq!(Texture::new(0, 1, vec![], 5), None, "no column");
+        assert_eq!(Texture::new(1, 0, vec![], 5), None, "no row");
+        assert_eq!(Texture::new(1, 1, vec![0; 3], 0), None, "maxval 0");
+        assert_eq!(Texture::new(usize::MAX, 2, vec![], 5), None, "a product beyond usize");
+    }
+
+    proptest! {
+        #[test]
+        fn the_texel_is_inside_for_any_numbers(u in any::<u64>(), v in any::<u64>(), w in 1usize..9, h in 1usize..9) {
+            let texture = ramp(w, h);
+            let (u, v) = (f64::from_bits(u), f64::from_bits(v));
+            let (column, row) = texture.texel(u, v);
+            prop_assert!(column < w && row < h, "({}, {}) gave ({}, {})", u, v, column, row);
+            prop_assert!(texture.nearest(u, v).is_finite() && texture.bilinear(u, v).is_finite());
+        }
+
+        #[test]
+        fn both_lookups_give_the_texel_at_its_center(w in 1usize..40, h in 1usize..40, i in 0usize..40, j in 0usize..40) {
+            let (i, j) = (i % w, j % h);
+            let texture = ramp(w, h);
+            let (u, v) = ((i as f64 + 0.5) / w as f64, (j as f64 + 0.5) / h as f64);
+            prop_assert_eq!(texture.texel(u, v), (i, j));
+            let (nearest, bilinear) = (texture.nearest(u, v), texture.bilinear(u, v));
+            // The center itself is rounded; a neighbour differs by at most 80 samples.
+            prop_assert!((nearest - bilinear).length() < 80.0 * 80.0 * f64::EPSILON, "{} {}", nearest, bilinear);
+        }
+
+        #[test]
+        fn bilinear_lookup_is_linear_between_centers(u in 0.125f64..0.875, v in 0.125f64..0.875) {
+            // A ramp is a linear function of the coordinates, away from the seam and the poles.
+            let (column, row) = texel_of(ramp(4, 4).bilinear(u, v));
+            prop_assert!((column - (4.0 * u - 0.5)).abs() < 1e-12, "column {} for {}", column, u);
+            prop_assert!((row - (4.0 * v - 0.5)).abs() < 1e-12, "row {} for {}", row, v);
+        }
+
+        #[test]
+        fn one_turn_more_is_the_same_place(u in 0.0f64..1.0, v in 0.0f64..1.0, turns in -5i32..5) {
+            let texture = ramp(8, 4);
+            // 2^-20 keeps u + turns exact.
+            let u = (u * 1_048_576.0).floor() / 1_048_576.0;
+            prop_assert_eq!(texture.texel(u + f64::from(turns), v), texture.texel(u, v));
+            prop_assert_eq!(texture.bilinear(u + f64::from(turns), v), texture.bilinear(u, v));
+        }
+    }
+
+    #[test]
+    fn u_wraps_and_v_ends() {
+        let texture = ramp(4, 3);
+        let below_one = 1.0 - f64::EPSILON / 2.0;
+        assert_eq!(texture.texel(1.0, 1.0), (0, 2), "u = 1 is the first column, v = 1 the last row");
+        assert_eq!(texture.texel(below_one, below_one), (3, 2));
+        assert_eq!(texture.texel(0.0, 0.0), (0, 0));
+        assert_eq!(texture.texel(-f64::from_bits(1), -1.0), (0, 0), "a hair below 0 rounds to a whole turn");
+        assert_eq!(texture.texel(-0.25, 2.0), (3, 2));
+        assert_eq!(texture.texel(f64::NAN, f64::NAN), (0, 0));
+        assert_eq!(texture.texel(f64::INFINITY, f64::INFINITY), (0, 2));
+    }
+
+    #[test]
+    fn bilinear_lookup_closes_at_the_seam_and_ends_at_the_poles() {
+        let texture = ramp(4, 3);
+        // Halfway between the last column and the first.
+        assert_eq!(texel_of(texture.bilinear(0.0, 0.5)), (1.5, 1.0));
+        assert_eq!(texture.bilinear(0.0, 0.5), texture.bilinear(1.0, 0.5));
+        // Above the center of the top row and below that of the last there is nothing to mix with.
+        assert_eq!(texel_of(texture.bilinear(0.375, 0.0)), (1.0, 0.0));
+        assert_eq!(texel_of(texture.bilinear(0.375, 1.0)), (1.0, 2.0));
+    }
+
+    #[test]
+    fn samples_are_divided_by_maxval_and_nothing_else() {
+        let texture = Texture::new(1, 1, vec![0, 51, 255], 255).expect("the samples fit");
+        let expected = DVec3::new(0.0, 0.2, 1.0);
+        assert_eq!(texture.nearest(0.3, 0.7), expected);
+        assert_eq!(texture.bilinear(0.3, 0.7), expected);
+    }
+
+    #[test]
+    fn a_map_reads_the_right_way_round_from_outside() {
+        // Seen from +z with +y up, +x is on the right: a map's next column lies further to the right.
+        let texture = ramp(16, 8);
+        let left = DVec3::new(-0.3, 0.2, 1.0);
+        let right = DVec3::new(0.3, 0.2, 1.0);
+        let column = |normal, mirrored| {
+            let (u, v) = crate::texture_uv(normal, mirrored);
+            texture.texel(u, v).0
+        };
+        assert!(column(left, false) < column(right, false), "the right way round");
+        assert!(column(left, true) > column(right, true), "the report's raw orientation");
+        let (_, north) = crate::texture_uv(DVec3::new(0.1, 0.9, 0.1), false);
+        assert!(north < 0.5, "north is at the top row");
+    }
+}
