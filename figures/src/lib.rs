@@ -26,3 +26,8 @@ pub mod render;
 pub mod scene;
 pub mod scene_file;
 mod texture_file;
+
+// The example on the front page is compiled like any other.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct FrontPage;
