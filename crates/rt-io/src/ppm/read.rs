@@ -594,6 +594,9 @@ impl<R: Read> Source<R> {
 }
 
 fn check_maxval<S: Copy + Into<u16>>(samples: &[S], maxval: u16, raster: u64) -> Result<(), PpmError> {
+    if u32::from(maxval) + 1 == 1 << (8 * size_of::<S>()) {
+        return Ok(()); // No byte, or pair of bytes, is above this maxval.
+    }
     // In blocks, so that the common case needs no branch per sample.
     for (index, block) in samples.chunks(4096).enumerate() {
         if block.iter().fold(0, |most, &sample| sample.into().max(most)) > maxval {
