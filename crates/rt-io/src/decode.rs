@@ -8,20 +8,22 @@
 //! where the file has fewer; JPEG is within 4 of 255 of libjpeg's (it leaves the decoder free). Grey becomes RGB, a
 //! palette is looked up, alpha is dropped, colour profiles and gamma are ignored. A TIFF's orientation is obeyed.
 
+mod jpeg_frame;
+mod tiff_directory;
+
 use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use image::codecs::{jpeg::JpegDecoder, png::PngDecoder, tiff::TiffDecoder};
 use image::metadata::Orientation;
-use image::{
-    ColorType, DynamicImage, ExtendedColorType, ImageBuffer, ImageDecoder, ImageError, ImageFormat,
-    ImageResult,
-};
+use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageResult};
 
 use crate::Limits;
 use crate::pixmap::{Pixmap, Samples};
 use crate::ppm::{self, PpmError};
+use jpeg_frame::JpegFrame;
+use tiff_directory::Directory;
 
 /// A picture that was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -207,7 +209,7 @@ fn decode_png(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
 }
 
 fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
-    let frame = jpeg_frame(bytes).ok_or(DecodeError::Truncated { format: "JPEG" })?;
+    let frame = JpegFrame::new(bytes).ok_or(DecodeError::Truncated { format: "JPEG" })?;
     let refuse = |what: &str| Err(DecodeError::Kind { format: "JPEG", what: what.to_string() });
     match frame {
         JpegFrame { process: 0xc0..=0xc2, precision: 8, components: 1 | 3, .. } => {}
@@ -231,58 +233,72 @@ fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
     finish("JPEG", JpegDecoder::new(Cursor::new(bytes)), &limits)
 }
 
-/// What a JPEG's frame header says.
-struct JpegFrame {
-    /// The marker: which kind of coding.
-    process: u8,
-    precision: u8,
-    width: u32,
-    height: u32,
-    components: u8,
-    /// Index of the byte behind it.
-    end: usize,
-}
-
-/// Walks from segment to segment to the frame header; `None` if the bytes end before it.
-fn jpeg_frame(bytes: &[u8]) -> Option<JpegFrame> {
-    let mut at = 2;
-    loop {
-        // Any number of 0xff may stand before a marker.
-        while *bytes.get(at)? != 0xff {
-            at += 1;
-        }
-        while *bytes.get(at)? == 0xff {
-            at += 1;
-        }
-        let marker = bytes[at];
-        at += 1;
-        if matches!(marker, 0x00 | 0x01 | 0xd0..=0xd8) {
-            continue; // Markers without a segment.
-        }
-        let length = usize::from(u16::from_be_bytes(*bytes.get(at..)?.first_chunk()?));
-        // Frame headers but for 0xc4, 0xc8, 0xcc, which are tables and a reserved one.
-        if matches!(marker, 0xc0..=0xcf) && marker & 3 != 0 || marker == 0xc0 {
-            let &[precision, h1, h0, w1, w0, components] = bytes.get(at + 2..)?.first_chunk()?;
-            return Some(JpegFrame {
-                process: marker,
-                precision,
-                width: u16::from_be_bytes([w1, w0]).into(),
-                height: u16::from_be_bytes([h1, h0]).into(),
-                components,
-                end: (at + length).min(bytes.len()),
-            });
-        }
-        at += length;
-    }
-}
-
 fn decode_tiff(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
+    let directory = Directory::new(bytes).ok_or(DecodeError::Truncated { format: "TIFF" })?;
+    if let Some(what) = tiff_kind_not_read(&directory) {
+        return Err(DecodeError::Kind { format: "TIFF", what });
+    }
+    if directory.shorts(tiff_directory::PHOTOMETRIC_INTERPRETATION) != Some(vec![3]) {
+        return decode_tiff_directly(bytes, limits);
+    }
+
+    // A palette, which the decoder does not know: as grey, each sample is an index.
+    let palette = directory.shorts(tiff_directory::COLOR_MAP).filter(|palette| palette.len() == 3 * 256);
+    let grey = directory.with(tiff_directory::PHOTOMETRIC_INTERPRETATION, 1);
+    let (Some(palette), Some(grey)) = (palette, grey) else {
+        return Err(DecodeError::Kind {
+            format: "TIFF",
+            what: "a palette of other than 256 colours".to_string(),
+        });
+    };
+    let pixmap = decode_tiff_directly(&grey, limits)?.pixmap;
+    // Its colours have 16 bits; some writers fill the low eight alone.
+    let shift = if palette.iter().any(|&sample| sample > 255) { 8 } else { 0 };
+    let indices = pixmap.to_samples();
+    let (pixels, _) = indices.as_chunks::<3>();
+    let color = |index: u16| [0, 256, 512].map(|channel| palette[channel + usize::from(index)] >> shift);
+    let samples = pixels.iter().flat_map(|&[index, _, _]| color(index)).collect();
+    let pixmap = Pixmap::new(pixmap.width(), pixmap.height(), 255, samples);
+    opaque(pixmap.expect("the size is that of a picture, and no sample has more than 8 bits"))
+}
+
+/// Names the part of a TIFF that is not read. What a directory leaves out has the value that the format gives it.
+fn tiff_kind_not_read(directory: &Directory<'_>) -> Option<String> {
+    let first =
+        |tag, default| directory.shorts(tag).and_then(|values| values.first().copied()).unwrap_or(default);
+    let what = match first(tiff_directory::COMPRESSION, 1) {
+        // None, fax group 4, LZW, deflate (both numbers), PackBits.
+        1 | 4 | 5 | 8 | 32946 | 32773 => None,
+        2 | 3 => Some("fax group 3 compression".to_string()),
+        6 | 7 => Some("JPEG compression".to_string()),
+        other => Some(format!("compression number {other}")),
+    };
+    let bits = first(tiff_directory::BITS_PER_SAMPLE, 1);
+    let samples = first(tiff_directory::SAMPLES_PER_PIXEL, 1);
+    what.or(match first(tiff_directory::SAMPLE_FORMAT, 1) {
+        1 => None,
+        3 => Some("floating-point samples".to_string()),
+        _ => Some("samples that are not unsigned integers".to_string()),
+    })
+    .or(match (first(tiff_directory::PHOTOMETRIC_INTERPRETATION, 1), samples, bits) {
+        (0 | 1, 1, 1 | 8 | 16) | (2, 3 | 4, 8 | 16) | (3, 1, 8) => None,
+        (0 | 1, 1, _) => Some(format!("{bits}-bit grey")),
+        (0 | 1, ..) => Some(format!("grey of {samples} samples")),
+        (2, 3 | 4, _) => Some(format!("{bits}-bit colours")),
+        (2, ..) => Some(format!("colours of {samples} samples")),
+        (3, ..) => Some(format!("a palette of {bits}-bit indices")),
+        (4, ..) => Some("a transparency mask".to_string()),
+        (5, ..) => Some("CMYK colours".to_string()),
+        (6, ..) => Some("YCbCr colours".to_string()),
+        (8..=10, ..) => Some("Lab colours".to_string()),
+        (other, ..) => Some(format!("photometric interpretation number {other}")),
+    })
+}
+
+fn decode_tiff_directly(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
     let decoder = TiffDecoder::new(Cursor::new(bytes));
     let decoder = decoder.map_err(|source| decode_error("TIFF", source))?;
     let (width, height) = decoder.dimensions();
-    if let ExtendedColorType::Cmyk8 | ExtendedColorType::Cmyk16 = decoder.original_color_type() {
-        return Err(DecodeError::Kind { format: "TIFF", what: "CMYK colours".to_string() });
-    }
     // LZW: twelve bits for at most 3837 bytes, and that only at the end of a table: under 1400 bytes a byte on average,
     // each of eight one-bit pixels. Fax coding can beat this on pages that are blank.
     let limits = check_size("TIFF", width, height, bytes, 8 * 1400, limits)?;

@@ -191,6 +191,13 @@ fn tiff_has_the_pixels_of_tifftopnm() {
             }
         }
     }
+    // A palette of 8-bit indices.
+    let samples =
+        (0..40 * 9).flat_map(|index| picture(16, 13, 255, false).pixel(index % 16, index % 13)).collect();
+    let palette = Pixmap::new(40, 9, 255, samples).unwrap();
+    for options in ["-none", "-lzw", "-flate -predictor=2", "-packbits"] {
+        assert_same_pixels(&palette, false, &format!("pamtotiff -color {options}"), "tifftopnm", 0);
+    }
     for options in ["-none", "-g4", "-lzw", "-packbits", "-none -miniswhite", "-none -minisblack"] {
         assert_same_pixels(
             &picture(37, 23, 255, true),

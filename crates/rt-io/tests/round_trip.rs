@@ -219,8 +219,9 @@ proptest! {
     }
 
     #[test]
-    fn mutated_tiff_files_never_panic(mutations in mutations(), packed: bool) {
-        let bytes = if packed { &include_bytes!("images/lzw.tiff")[..] } else { include_bytes!("images/plain.tiff") };
-        let _ = decode_image(&mutate(bytes.to_vec(), &mutations), &Limits { max_pixels: 1 << 16 });
+    fn mutated_tiff_files_never_panic(mutations in mutations(), kind in 0..3_usize) {
+        let files: [&[u8]; 3] =
+            [include_bytes!("images/plain.tiff"), include_bytes!("images/lzw.tiff"), include_bytes!("images/palette.tiff")];
+        let _ = decode_image(&mutate(files[kind].to_vec(), &mutations), &Limits { max_pixels: 1 << 16 });
     }
 }
