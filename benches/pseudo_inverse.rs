@@ -52,7 +52,9 @@ fn benches(criterion: &mut Criterion) {
 
     measure(criterion, "adjugate_over_determinant", "benign", same, adjugate_over_determinant);
     measure(criterion, "pseudo_inverse", "benign", same, |m| pseudo_inverse(*m));
-    measure(criterion, "pseudo_inverse_with_tolerance", "benign", same, |m| pseudo_inverse_with_tolerance(*m, TOLERANCE));
+    measure(criterion, "pseudo_inverse_with_tolerance", "benign", same, |m| {
+        pseudo_inverse_with_tolerance(*m, TOLERANCE)
+    });
     measure(criterion, "glam_inverse", "benign", same, |m| m.inverse());
     measure(criterion, "nalgebra_try_inverse", "benign", foreign, |m| m.try_inverse());
     measure(criterion, "nalgebra_svd_pseudo_inverse", "benign", foreign, |m| m.pseudo_inverse(TOLERANCE));

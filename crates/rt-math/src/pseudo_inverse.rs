@@ -5,9 +5,12 @@
 //! singular values below a tolerance are taken as zero.
 
 mod integers;
+mod narrow;
 mod regular;
 
 use glam::{DMat3, DVec3};
+
+use crate::fma_dispatch;
 
 /// A pseudo-inverse and the rank it was made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,14 +43,44 @@ pub struct PseudoInverse {
 /// assert_eq!(answer.rank, 1);
 /// assert_eq!(answer.matrix, DMat3::from_diagonal(DVec3::new(0.0, 0.25, 0.0)));
 /// ```
+#[inline]
 pub fn pseudo_inverse(m: DMat3) -> PseudoInverse {
-    if let Some(inverse) = regular::inverse(&m) {
-        return PseudoInverse { matrix: inverse, rank: 3 };
+    let [a, b, c, d, e, f, g, h, i] = m.to_cols_array();
+    staged(a, b, c, d, e, f, g, h, i)
+}
+
+fma_dispatch! {
+    #[expect(clippy::too_many_arguments, reason = "nine numbers in registers; from memory just written they come late")]
+    fn staged(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> PseudoInverse = staged_kernel;
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn staged_kernel<const FMA: bool>(
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    h: f64,
+    i: f64,
+) -> PseudoInverse {
+    let m = [a, b, c, d, e, f, g, h, i];
+    match regular::inverse::<FMA>(&m) {
+        Some(matrix) => PseudoInverse { matrix, rank: 3 },
+        None => undecided(&DMat3::from_cols_array(&m)),
     }
+}
+
+#[cold]
+#[inline(never)]
+fn undecided(m: &DMat3) -> PseudoInverse {
     if !m.is_finite() {
         return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
     }
-    integers::pseudo_inverse(&m)
+    narrow::pseudo_inverse(m).unwrap_or_else(|| integers::pseudo_inverse(m))
 }
 
 /// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.
@@ -134,8 +167,56 @@ fn exponent(x: f64) -> i32 {
 }
 
 #[cfg(test)]
+#[path = "../tests/pseudo_inverse/matrices.rs"]
+mod matrices;
+
+#[cfg(test)]
 mod tests {
+    use super::matrices::{CLASSES, Random};
     use super::*;
+    use crate::oracle::cases;
+
+    /// Every stage decides, and what it decides is what the exact integers say, to the bit.
+    #[test]
+    fn stages_agree_and_each_one_decides() {
+        let mut decided = [0; 3];
+        for (name, class) in CLASSES {
+            let mut random = Random(7);
+            let mut of_class = [0; 3];
+            for _ in 0..cases(100_000) / 10 {
+                let m = class(&mut random);
+                let expected = integers::pseudo_inverse(&m);
+                let entries = m.to_cols_array();
+                let fused = regular::inverse::<true>(&entries);
+                let split = regular::inverse::<false>(&entries);
+                let narrow = narrow::pseudo_inverse(&m);
+                for inverse in [fused, split].into_iter().flatten() {
+                    assert_eq!(
+                        bits(&PseudoInverse { matrix: inverse, rank: 3 }),
+                        bits(&expected),
+                        "{name}: {entries:?}"
+                    );
+                }
+                if let Some(answer) = narrow {
+                    assert_eq!(bits(&answer), bits(&expected), "{name}: {entries:?}");
+                }
+                of_class[if split.is_some() {
+                    0
+                } else if narrow.is_some() {
+                    1
+                } else {
+                    2
+                }] += 1;
+            }
+            println!("{name:24} double-double, 256 bits, any size: {of_class:?}");
+            decided.iter_mut().zip(of_class).for_each(|(sum, count)| *sum += count);
+        }
+        assert!(decided.iter().all(|&count| count > 1000), "{decided:?}");
+    }
+
+    fn bits(answer: &PseudoInverse) -> (usize, [u64; 9]) {
+        (answer.rank, answer.matrix.to_cols_array().map(f64::to_bits))
+    }
 
     #[test]
     fn inverse_of_a_rotation_is_its_transpose() {

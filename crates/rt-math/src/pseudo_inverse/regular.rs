@@ -6,7 +6,6 @@
 use glam::DMat3;
 
 use crate::exact::{two_diff, two_prod, two_sum};
-use crate::fma_dispatch;
 
 /// Half a unit in the last place of 1, called u in the proofs.
 const U: f64 = f64::EPSILON / 2.0;
@@ -19,15 +18,8 @@ const ETA_LIMIT: f64 = 1.0 / 8.0;
 const SMALLEST: f64 = 1.0 / LARGEST;
 const LARGEST: f64 = f64::from_bits((1023 + 100) << 52); // 2^100
 
-fma_dispatch! {
-    /// The correctly rounded inverse, if double-double is enough to prove that the matrix is regular and to round
-    /// every entry, and all entries are zero or within 2^±100.
-    pub(super) fn inverse(m: &DMat3) -> Option<DMat3> = inverse_kernel;
-}
-
 #[inline(always)]
-pub(super) fn inverse_kernel<const FMA: bool>(m: &DMat3) -> Option<DMat3> {
-    let m = m.to_cols_array();
+pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
     if !m.iter().fold(true, |all, &x| all & ((x == 0.0) | ((x.abs() >= SMALLEST) & (x.abs() <= LARGEST)))) {
         return None;
     }
@@ -36,9 +28,10 @@ pub(super) fn inverse_kernel<const FMA: bool>(m: &DMat3) -> Option<DMat3> {
     let (mut h, mut l, mut b) = ([0.0; 9], [0.0; 9], [0.0; 9]);
     for column in 0..3 {
         for row in 0..3 {
-            let entry = |i: usize, j: usize| m[3 * ((row + j) % 3) + (column + i) % 3];
-            let (first, first_error) = two_prod::<FMA>(entry(1, 1), entry(2, 2));
-            let (second, second_error) = two_prod::<FMA>(entry(2, 1), entry(1, 2));
+            let (j1, j2, i1, i2) = ((column + 1) % 3, (column + 2) % 3, (row + 1) % 3, (row + 2) % 3);
+            let (p, q, r, s) = (m[3 * i1 + j1], m[3 * i2 + j2], m[3 * i2 + j1], m[3 * i1 + j2]);
+            let (first, first_error) = two_prod::<FMA>(p, q);
+            let (second, second_error) = two_prod::<FMA>(r, s);
             let (high, high_error) = two_diff(first, second);
             let errors = first_error - second_error;
             let low = high_error + errors;
@@ -60,31 +53,52 @@ pub(super) fn inverse_kernel<const FMA: bool>(m: &DMat3) -> Option<DMat3> {
     let bound =
         1.125 * U * (sum([a[0] * b[0], a[1] * b[1], a[2] * b[2]]) + sum(v) + sum(x) + sum(y) + low.abs());
 
-    // Its reciprocal: 1 / determinant = r (1 + tau + tau^2), within a relative error below `eta`.
-    let r = 1.0 / s;
-    let (product, product_error) = two_prod::<FMA>(r, s);
-    let tau = ((1.0 - product) - product_error) - low * r;
-    let (t, eta_0) = (tau.abs(), bound * r.abs());
-    if !((t < TAU_LIMIT) & (eta_0 < ETA_LIMIT)) {
-        return None;
-    }
-    let r_low = r * (tau + tau * tau);
-    let r_sum = r + r_low;
-    let eta = 2.0 * eta_0 + 16.0 * (U * U + t * (U + t * t));
-
-    // The quotients, each with its rounding test.
-    let (h_weight, b_weight) = (r.abs() * eta, r.abs() * (eta + 8.0 * U));
+    let reciprocal = Reciprocal::<FMA>::new(s, low, bound)?;
     let mut inverse = [0.0; 9];
     let mut certain = true;
     for k in 0..9 {
-        let (quotient, error) = two_prod::<FMA>(h[k], r);
-        let correction = error + fused::<FMA>(h[k], r_low, l[k] * r_sum);
-        let bound = fused::<FMA>(h_weight, h[k].abs(), b_weight * b[k]);
-        let (lower, upper) = (quotient + (correction - bound), quotient + (correction + bound));
+        let (lower, upper) = reciprocal.times(h[k], l[k], b[k]);
         certain &= lower == upper;
         inverse[k] = upper + 0.0; // an exact zero is +0.0
     }
     certain.then(|| DMat3::from_cols_array(&inverse))
+}
+
+/// The reciprocal of a number that is not zero, `r (1 + tau + tau^2)` with a relative error, to divide by it.
+pub(super) struct Reciprocal<const FMA: bool> {
+    r: f64,
+    /// `r (tau + tau^2)`
+    r_low: f64,
+    r_sum: f64,
+    /// Error of a quotient by `h` of the numerator, and by `b`.
+    weights: (f64, f64),
+}
+
+impl<const FMA: bool> Reciprocal<FMA> {
+    /// The reciprocal of a number within `bound` of `s + low`, unless that may be zero or is too inexact.
+    #[inline(always)]
+    pub(super) fn new(s: f64, low: f64, bound: f64) -> Option<Self> {
+        let r = 1.0 / s;
+        let (product, product_error) = two_prod::<FMA>(r, s);
+        let tau = ((1.0 - product) - product_error) - low * r;
+        let (t, eta_0) = (tau.abs(), bound * r.abs());
+        if !((t < TAU_LIMIT) & (eta_0 < ETA_LIMIT)) {
+            return None;
+        }
+        let r_low = r * (tau + tau * tau);
+        let eta = 2.0 * eta_0 + 16.0 * (U * U + t * (U + t * t));
+        Some(Self { r, r_low, r_sum: r + r_low, weights: (r.abs() * eta, r.abs() * (eta + 8.0 * U)) })
+    }
+
+    /// Two doubles, the roundings of a lower and an upper bound of the quotient: where they are equal, so is its
+    /// rounding. The numerator is within `u b` of `h + l`, and `|l| <= b`.
+    #[inline(always)]
+    pub(super) fn times(&self, h: f64, l: f64, b: f64) -> (f64, f64) {
+        let (quotient, error) = two_prod::<FMA>(h, self.r);
+        let correction = error + fused::<FMA>(h, self.r_low, l * self.r_sum);
+        let bound = fused::<FMA>(self.weights.0, h.abs(), self.weights.1 * b);
+        (quotient + (correction - bound), quotient + (correction + bound))
+    }
 }
 
 /// `a b + c`, rounded once or twice: for terms whose bound allows either.
