@@ -58,7 +58,7 @@ fn rank_is_exact_and_every_entry_correctly_rounded() {
 
 #[test]
 fn oracle_meets_the_penrose_conditions_exactly() {
-    for_every_class(cases(), |_, m| oracle::pseudo_inverse(m).assert_penrose(m));
+    for_every_class(cases() / 10, |_, m| oracle::pseudo_inverse(m).assert_penrose(m));
 }
 
 #[test]
