@@ -15,7 +15,7 @@ impl Random {
     }
 
     /// An integer from `low` to `high`, both included.
-    fn integer(&mut self, low: i64, high: i64) -> i64 {
+    pub(crate) fn integer(&mut self, low: i64, high: i64) -> i64 {
         low + i64::try_from(self.bits() % u64::try_from(high - low + 1).unwrap()).unwrap()
     }
 
@@ -24,7 +24,7 @@ impl Random {
     }
 
     /// A number in -1..1 with a full mantissa.
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * 2f64.powi(-52) - 1.0
     }
 
