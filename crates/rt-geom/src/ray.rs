@@ -50,8 +50,8 @@ impl Ray {
 /// 2^-100 and 2^100. For any other direction `reach` is NaN: every comparison with an error bound then fails, and
 /// the exact path decides.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PreparedRay {
-    pub(crate) ray: Ray,
+pub(crate) struct PreparedRay<'a> {
+    pub(crate) ray: &'a Ray,
     /// The range of `t` that counts, as in `holds`.
     pub(crate) start: f64,
     pub(crate) end: f64,
@@ -62,18 +62,18 @@ pub(crate) struct PreparedRay {
     pub(crate) inverse_square: f64,
 }
 
-impl PreparedRay {
-    #[inline]
-    pub(crate) fn new(ray: &Ray, within: Range<f64>) -> Self {
+impl<'a> PreparedRay<'a> {
+    #[inline(always)]
+    pub(crate) fn new(ray: &'a Ray, within: Range<f64>) -> Self {
         const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
         let reach = max_abs(ray.direction);
         let reach = if (1.0 / LONGEST..=LONGEST).contains(&reach) { reach } else { f64::NAN };
         let square = ray.direction.length_squared();
-        Self { ray: *ray, start: within.start, end: within.end, reach, square, inverse_square: 1.0 / square }
+        Self { ray, start: within.start, end: within.end, reach, square, inverse_square: 1.0 / square }
     }
 
     /// The range.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn within(&self) -> Range<f64> {
         self.start..self.end
     }

@@ -179,7 +179,7 @@ impl Sphere {
 
     /// Returns bounds of the closest hit's `t`, or `None` if nothing in the range is hit or the hit surely lies
     /// beyond `limit`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
         match self.line(prepared) {
             Line::Misses => None,
@@ -188,15 +188,18 @@ impl Sphere {
                 if root.high() < prepared.start {
                     root = crossing.far();
                 }
-                prepared.admit((root.low(), root.high()), limit, || self.exact_candidate(prepared, limit))
+                prepared.admit((root.low(), root.high()), limit, || {
+                    self.exact_candidate(prepared.ray, prepared.within(), limit)
+                })
             }
-            Line::Unsure => self.exact_candidate(prepared, limit),
+            Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
     }
 
     #[cold]
-    fn exact_candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        Candidate::exact(exact::closest(self, &prepared.ray, prepared.within()), limit)
+    #[inline(never)]
+    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
+        Candidate::exact(exact::closest(self, ray, within), limit)
     }
 
     /// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.

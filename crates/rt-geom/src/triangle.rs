@@ -206,20 +206,20 @@ impl Triangle {
 
     /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
     /// `limit`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
         match self.line(prepared) {
             Line::Misses => None,
-            Line::Hits(Candidate { low, high }) => {
-                prepared.admit((low, high), limit, || self.exact_candidate(prepared, limit))
-            }
-            Line::Unsure => self.exact_candidate(prepared, limit),
+            Line::Hits(Candidate { low, high }) => prepared
+                .admit((low, high), limit, || self.exact_candidate(prepared.ray, prepared.within(), limit)),
+            Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
     }
 
     #[cold]
-    fn exact_candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        Candidate::exact(exact::closest(self, &prepared.ray, prepared.within()), limit)
+    #[inline(never)]
+    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
+        Candidate::exact(exact::closest(self, ray, within), limit)
     }
 
     /// The filter for the verdict: `Less` if the line surely passes beside the triangle, `Greater` if through its
