@@ -13,6 +13,7 @@
 //! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything.
 
 use glam::DVec3;
+use rt_math::reflect;
 
 use crate::color::clamp_channel;
 use crate::power::power;
@@ -51,7 +52,8 @@ pub struct PointLight {
 /// exactly at the point adds nothing. Without lights the result is `surface` itself: a flat picture.
 ///
 /// Channels are not clamped. A zero or non-finite direction, normal or distance to a light leaves the term out that
-/// needs it. A NaN shininess makes the specular term NaN; one of 0 or less counts as a power all the same.
+/// needs it. A NaN shininess makes the specular term NaN; one of 0 or less counts as a power all the same; a specular
+/// coefficient of 0 leaves the term out, whatever the shininess.
 ///
 /// Source: B. T. Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975.
 ///
@@ -91,8 +93,11 @@ pub fn phong(
         // Written so that NaN fails it.
         if cosine > 0.0 {
             color += material.diffuse * cosine.min(1.0) * surface * light.color;
-            let alignment = clamp_channel((-direction).dot(reflect(incident, normal)));
-            color += material.specular * power(alignment, material.shininess) * light.color;
+            // Most surfaces are matt: no mirrored term, no power.
+            if material.specular != 0.0 {
+                let alignment = clamp_channel((-direction).dot(reflect(incident, normal)));
+                color += material.specular * power(alignment, material.shininess) * light.color;
+            }
         }
     }
     color
@@ -126,11 +131,6 @@ fn towards(from: DVec3, to: DVec3) -> DVec3 {
     let difference = to - from;
     // Only the sum of two huge numbers overflows, and those can be halved without loss.
     if difference.is_finite() { difference } else { 0.5 * to - 0.5 * from }
-}
-
-/// Mirrors `incident` at the plane through the origin that is perpendicular to `normal`.
-fn reflect(incident: DVec3, normal: DVec3) -> DVec3 {
-    incident - 2.0 * (incident.dot(normal) / normal.dot(normal)) * normal
 }
 
 #[cfg(test)]
