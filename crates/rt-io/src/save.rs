@@ -226,18 +226,24 @@ impl Temporary {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 Err(error) => return Err(error),
             };
-            match file.try_lock() {
-                Ok(()) => {}
-                // Somebody's clean-up saw the file before it was locked, and removes it.
-                Err(TryLockError::WouldBlock) => continue,
-                // A file system without locks: nobody's clean-up can lock the file either, so nobody removes it.
-                Err(TryLockError::Error(_)) => {}
-            }
-            // Once the file is locked nobody removes it; before, somebody may have.
-            if path.exists() {
-                return Ok(Self { path, file, renamed: false });
+            if let Some(temporary) = Self::claim(path, file) {
+                return Ok(temporary);
             }
         }
+    }
+
+    /// Locks a file that was just created, or gives it up to a clean-up that found it before it was locked.
+    fn claim(path: PathBuf, file: File) -> Option<Self> {
+        match file.try_lock() {
+            // Nobody removes a locked file; before, somebody may have.
+            Ok(()) if path.exists() => {}
+            Ok(()) => return None,
+            // Somebody is about to remove it.
+            Err(TryLockError::WouldBlock) => return None,
+            // A file system without locks: no clean-up can lock the file either, so none removes it.
+            Err(TryLockError::Error(_)) => {}
+        }
+        Some(Self { path, file, renamed: false })
     }
 }
 
@@ -246,5 +252,36 @@ impl Drop for Temporary {
         if !self.renamed {
             let _ = fs::remove_file(&self.path);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_temporary_that_a_clean_up_found_first_is_given_up() {
+        let folder = std::env::temp_dir().join(format!("rt-io-claim-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let path = folder.join(format!(".a.{}.tmp", id(0)));
+
+        // Locked by the clean-up, then removed by it, before the writer locks.
+        let file = File::create_new(&path).unwrap();
+        let clean_up = OpenOptions::new().write(true).open(&path).unwrap();
+        clean_up.lock().unwrap();
+        assert!(Temporary::claim(path.clone(), file).is_none());
+        drop(clean_up);
+        fs::remove_file(&path).unwrap();
+        let file = File::create_new(&path).unwrap();
+        remove_stale(&folder, ".a.");
+        assert!(Temporary::claim(path.clone(), file).is_none());
+
+        // Locked by the writer first: nobody removes it but the writer.
+        let temporary = Temporary::claim(path.clone(), File::create_new(&path).unwrap()).unwrap();
+        remove_stale(&folder, ".a.");
+        assert!(path.exists());
+        drop(temporary);
+        assert!(!path.exists());
+        fs::remove_dir(&folder).unwrap();
     }
 }

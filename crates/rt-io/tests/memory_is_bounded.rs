@@ -149,6 +149,13 @@ fn readers_take_memory_in_proportion_to_the_bytes() {
         }
     }
 
+    // A raw raster that is long, and known to be too short, is not even begun.
+    for header in ["P6\n16384 16384\n255\n", "P6\n16384 16384\n65535\n"] {
+        let bytes = [header.as_bytes(), &vec![1; 8 << 20]].concat();
+        let (result, peak) = peak_of(|| ppm::read_bytes(&bytes, &limits));
+        assert!(result.is_err() && peak < 1 << 20, "{header:?}: {peak} bytes");
+    }
+
     let mut hostile = vec![];
     for (width, height) in
         [(16384, 16384), (16000, 16000), (1 << 28, 1), (u32::MAX, u32::MAX), (900, 900), (3000, 2000)]

@@ -131,3 +131,51 @@ fn push_decimal(value: u16, text: &mut Vec<u8>) {
         _ => text.extend([digit(10000), digit(1000), digit(100), digit(10), digit(1)]),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(width: usize, maxval: u16) -> Vec<usize> {
+        let pixmap = Pixmap::new(width, 2, maxval, vec![maxval; 6 * width]).unwrap();
+        let mut bytes = Vec::new();
+        write(&pixmap, Encoding::Plain, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        text.lines().skip(3).map(|line| line.split_whitespace().count()).collect()
+    }
+
+    #[test]
+    fn plain_lines_break_where_those_of_netpbm_do() {
+        // Whole pixels, as many as the digits of maxval allow; a new row is a new line.
+        assert_eq!(lines(30, 9), [78, 12, 78, 12]);
+        assert_eq!(lines(15, 10), [39, 6, 39, 6]);
+        assert_eq!(lines(9, 255), [24, 3, 24, 3]);
+        assert_eq!(lines(7, 1000), [18, 3, 18, 3]);
+        assert_eq!(lines(6, 65535), [15, 3, 15, 3]);
+        // A row that ends with a full line is followed by an empty one.
+        assert_eq!(lines(8, 255), [24, 0, 24, 0]);
+        assert_eq!(lines(10, 65535), [15, 15, 0, 15, 15, 0]);
+    }
+
+    #[test]
+    fn a_writer_that_fails_is_an_error() {
+        struct Full(usize);
+        impl Write for Full {
+            fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+                let count = bytes.len().min(self.0);
+                self.0 -= count;
+                if count == 0 { Err(io::ErrorKind::StorageFull.into()) } else { Ok(count) }
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let pixmap = Pixmap::new(100, 100, 65535, vec![12345; 30_000]).unwrap();
+        for encoding in [Encoding::Raw, Encoding::Plain] {
+            for room in [0, 5, 20, 50_000] {
+                let error = write(&pixmap, encoding, &mut Full(room)).unwrap_err();
+                assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{encoding:?} {room}");
+            }
+        }
+    }
+}
