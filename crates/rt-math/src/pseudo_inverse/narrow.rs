@@ -7,7 +7,7 @@
 
 use glam::DMat3;
 
-use super::{PseudoInverse, power_of_two, regular::Reciprocal};
+use super::{PseudoInverse, graded::shifted, power_of_two, regular::Reciprocal};
 
 /// The exact rank and the correctly rounded pseudo-inverse of a finite matrix, if it is of this kind, no entry of the
 /// answer is subnormal, and double-double is enough to round every entry.
@@ -89,17 +89,15 @@ fn divided(rows: &[[Wide; 3]; 3], denominator: &Wide, exponent: i32) -> Option<D
     // The two doubles hold all but 2 u^2 of a number.
     const CUT: f64 = 2.0 * f64::EPSILON * f64::EPSILON / 4.0;
     let reciprocal = Reciprocal::<false>::new(s, low, CUT * s.abs())?;
-    let (half, rest) = (power_of_two(-exponent / 2), power_of_two(-exponent - -exponent / 2));
     let mut inverse = DMat3::ZERO;
     for (i, row) in rows.iter().enumerate() {
         for (j, numerator) in row.iter().enumerate() {
             let (h, l) = numerator.leading();
             let (lower, upper) = reciprocal.times(h, l, l.abs() + f64::EPSILON * h.abs());
-            let entry = upper * half * rest;
-            if lower != upper || (entry.abs() <= f64::MIN_POSITIVE && h != 0.0) {
+            if lower != upper {
                 return None;
             }
-            inverse.col_mut(j)[i] = entry + 0.0; // an exact zero is +0.0
+            inverse.col_mut(j)[i] = shifted(upper + 0.0, -exponent)?; // an exact zero is +0.0
         }
     }
     Some(inverse)
