@@ -282,7 +282,7 @@ mod tests {
         }
 
         #[test]
-        fn the_length_of_a_normal_does_not_matter(x in unit(), y in unit(), z in unit(), e in -1000..1000) {
+        fn the_length_of_a_normal_does_not_matter(x in unit(), y in unit(), z in unit(), e in -900..1000) {
             let normal = DVec3::new(x, y, z);
             let scaled = normal * 2f64.powi(e);
             // Only a power of two keeps the direction exactly, and only without underflow.
