@@ -174,18 +174,26 @@ fn double_double(a: f64, b: f64, c: f64) -> Option<Roots> {
 }
 
 /// The last stage, exact for all finite coefficients; `a` and `c` are not zero.
-#[inline(never)]
 fn integers(a: f64, b: f64, c: f64) -> Roots {
-    // (-b ± √D) / 2a: all of b, √D and 2 m 2a are below 2^1028 and multiples of 2^-2147
-    type Number = Dyadic<104>;
     decided(Stage::Integers);
-    let [a, b, c] = [a, b, c].map(Number::from_f64);
+    // Dyadic::root with p = -b, q = 2a: all of p, √D and 2 m q lie below 2^t and are multiples of 2^s
+    let near_one = |x: f64| (power_of_two(-64)..power_of_two(64)).contains(&x.abs());
+    if near_one(a) && near_one(c) && (b == 0.0 || near_one(b)) {
+        sized::<16>(a, b, c) // t = 68, s = -300
+    } else {
+        sized::<104>(a, b, c) // t = 1028, s = -2147
+    }
+}
+
+#[inline(never)]
+fn sized<const LIMBS: usize>(a: f64, b: f64, c: f64) -> Roots {
+    let [a, b, c] = [a, b, c].map(Dyadic::<LIMBS>::from_f64);
     let discriminant = b.square() - (&a * &c).scale(2);
     let (minus_b, two_a) = (-b, &a + &a);
-    let root = |minus| Number::root(&minus_b, minus, &discriminant, &two_a);
+    let root = |minus| Dyadic::root(&minus_b, minus, &discriminant, &two_a);
     match discriminant.sign() {
         Ordering::Less => Roots::None,
-        Ordering::Equal => Roots::One(Number::quotient(&minus_b, &two_a)),
+        Ordering::Equal => Roots::One(Dyadic::quotient(&minus_b, &two_a)),
         Ordering::Greater if a.sign() == Ordering::Less => Roots::Two(root(false), root(true)),
         Ordering::Greater => Roots::Two(root(true), root(false)),
     }

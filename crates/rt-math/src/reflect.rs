@@ -97,13 +97,23 @@ fn rest(v: DVec3, n: DVec3) -> DVec3 {
 
 /// The last stage, exact for all finite vectors; `n` is not zero.
 fn integers(v: DVec3, n: DVec3) -> DVec3 {
-    // v_i (n·n) - 2 (v·n) n_i is below 2^3076 and a multiple of 2^-3222: 101 limbs, and 2 for the rounding
-    type Number = Dyadic<104>;
     decided(Stage::Integers);
-    let [v, n] = [v, n].map(|x| x.to_array().map(Number::from_f64));
-    let dot = |a: &[Number; 3], b: &[Number; 3]| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
+    // v_i (n·n) - 2 (v·n) n_i lies below 2^t and is a multiple of 2^s; two limbs more for the rounding
+    let near_one = |x: f64| x == 0.0 || (power_of_two(-64)..power_of_two(64)).contains(&x.abs());
+    if v.to_array().into_iter().chain(n.to_array()).all(near_one) {
+        sized::<16>(v, n) // t = 196, s = -348
+    } else {
+        sized::<104>(v, n) // t = 3076, s = -3222
+    }
+}
+
+#[inline(never)]
+fn sized<const LIMBS: usize>(v: DVec3, n: DVec3) -> DVec3 {
+    type Vector<const LIMBS: usize> = [Dyadic<LIMBS>; 3];
+    let [v, n] = [v, n].map(|x| x.to_array().map(Dyadic::<LIMBS>::from_f64));
+    let dot = |a: &Vector<LIMBS>, b: &Vector<LIMBS>| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
     let (twice, nn) = (dot(&v, &n).scale(1), dot(&n, &n));
-    DVec3::from_array([0, 1, 2].map(|i| Number::quotient(&(&v[i] * &nn - &twice * &n[i]), &nn)))
+    DVec3::from_array([0, 1, 2].map(|i| Dyadic::quotient(&(&v[i] * &nn - &twice * &n[i]), &nn)))
 }
 
 #[cfg(test)]

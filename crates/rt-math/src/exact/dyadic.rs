@@ -56,9 +56,10 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
         let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
         let exponent = biased.max(1) - 1075;
         let wide = u128::from(mantissa) << exponent.rem_euclid(64);
-        let mut limbs = [0; LIMBS];
-        (limbs[0], limbs[1]) = (low(wide), high(wide));
-        Self { negative: x.is_sign_negative(), base: exponent.div_euclid(64), len: 2, limbs }.normal()
+        let mut number = Self::blank(x.is_sign_negative(), exponent.div_euclid(64), 2);
+        (number.limbs[0], number.limbs[1]) = (low(wide), high(wide));
+        number.trim();
+        number
     }
 
     /// 2ᵏ.
@@ -204,22 +205,33 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
         &self.limbs[..self.len]
     }
 
+    /// A number with `len` live limbs, all still zero.
+    #[inline(always)]
+    fn blank(negative: bool, base: i32, len: usize) -> Self {
+        Self { negative, base, len, limbs: [0; LIMBS] }
+    }
+
     /// Restores the promise on the first and the last limb.
-    fn normal(mut self) -> Self {
+    #[inline(always)]
+    fn trim(&mut self) {
+        if self.len == 0 || self.limbs[0] == 0 || self.limbs[self.len - 1] == 0 {
+            self.trim_zeros();
+        }
+    }
+
+    fn trim_zeros(&mut self) {
         while self.len > 0 && self.limbs[self.len - 1] == 0 {
             self.len -= 1;
         }
-        let zeros = self.live().iter().take_while(|&&limb| limb == 0).count();
         if self.len == 0 {
-            return Self::ZERO;
+            *self = Self::ZERO;
+            return;
         }
-        if zeros > 0 {
-            self.limbs.copy_within(zeros..self.len, 0);
-            self.len -= zeros;
-            self.limbs[self.len..self.len + zeros].fill(0);
-            self.base += index(zeros);
-        }
-        self
+        let zeros = self.live().iter().take_while(|&&limb| limb == 0).count();
+        self.limbs.copy_within(zeros..self.len, 0);
+        self.len -= zeros;
+        self.limbs[self.len..self.len + zeros].fill(0);
+        self.base += index(zeros);
     }
 
     fn cmp_magnitude(&self, other: &Self) -> Ordering {
@@ -242,12 +254,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     /// `|self| + |other|` with the sign of `self`; both not zero.
     fn add_magnitude(&self, other: &Self) -> Self {
         let base = self.base.min(other.base);
-        let mut sum = Self {
-            negative: self.negative,
-            base,
-            len: span(base, self.top().max(other.top())),
-            ..Self::ZERO
-        };
+        let mut sum = Self::blank(self.negative, base, span(base, self.top().max(other.top())));
         let at = span(base, self.base);
         sum.limbs[at..at + self.len].copy_from_slice(self.live());
         let mut carry = false;
@@ -267,7 +274,8 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
             sum.limbs[sum.len] = 1;
             sum.len += 1;
         }
-        sum.normal()
+        sum.trim();
+        sum
     }
 
     /// `|self| - |other|` with the sign of `self`; needs `|self| > |other| > 0`.
@@ -290,7 +298,8 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
                 }
             }
         }
-        difference.normal()
+        difference.trim();
+        difference
     }
 }
 
@@ -339,8 +348,7 @@ impl<const LIMBS: usize> Mul for &Dyadic<LIMBS> {
             return Dyadic::ZERO;
         }
         let len = self.len + other.len - 1; // and one more if the last carry is not zero
-        let base = self.base + other.base;
-        let mut product = Dyadic { negative: self.negative != other.negative, base, len, ..Dyadic::ZERO };
+        let mut product = Dyadic::blank(self.negative != other.negative, self.base + other.base, len);
         let mut last_carry = 0;
         for (i, &x) in self.live().iter().enumerate() {
             let mut carry = 0;
@@ -358,7 +366,8 @@ impl<const LIMBS: usize> Mul for &Dyadic<LIMBS> {
             product.limbs[len] = last_carry;
             product.len += 1;
         }
-        product.normal()
+        product.trim();
+        product
     }
 }
 
