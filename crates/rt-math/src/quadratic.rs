@@ -56,8 +56,8 @@ const CANCELLATION: f64 = power_of_two(-20);
 const D_FLOOR: f64 = power_of_two(-900);
 /// Bound of the filter's error in a root: this part of it, and an absolute one for what may underflow.
 const FILTER_ERROR: f64 = power_of_two(-73);
-const FILTER_ERROR_FLOOR: f64 = power_of_two(-600);
-/// Bound of the relative error of a root in double-double: 28.1 u² is proved.
+const FILTER_ERROR_FLOOR: f64 = power_of_two(-500);
+/// Bound of the relative error of a root in double-double: 31 u² is needed.
 const DOUBLE_DOUBLE_ERROR: f64 = power_of_two(-101);
 
 #[inline(always)]
