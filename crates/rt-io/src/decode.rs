@@ -228,8 +228,9 @@ fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
     if !bytes[frame.end..].windows(2).any(|marker| marker == [0xff, 0xd9]) {
         return Err(DecodeError::Truncated { format: "JPEG" });
     }
-    // At most ten blocks of 8 x 8 a unit, a bit each, for at most 32 x 16 pixels.
-    let limits = check_size("JPEG", frame.width, frame.height, bytes, 8 * 32 * 16 / 10 + 1, limits)?;
+    // Every block of 8 x 8 samples takes a bit or more. The fewest blocks for an area: one component has a quarter of the
+    // rows, one a quarter of the columns, one of both, that is 4 + 4 + 1 blocks for 32 x 32 pixels.
+    let limits = check_size("JPEG", frame.width, frame.height, bytes, 8 * 32 * 32 / 9 + 1, limits)?;
     finish("JPEG", JpegDecoder::new(Cursor::new(bytes)), &limits)
 }
 

@@ -233,3 +233,17 @@ fn jpeg_is_within_4_of_libjpeg() {
         }
     }
 }
+
+/// The densest files that there are, of one colour, are not taken for broken ones.
+#[test]
+fn the_bound_on_pixels_per_byte_refuses_no_whole_file() {
+    let flat = Pixmap::new(2000, 1000, 255, vec![255; 6_000_000]).unwrap();
+    for (encoder, decoder) in [
+        ("pnmtojpeg -progressive -optimize -quality=1", "jpegtopnm"),
+        ("pnmtopng -compression=9", "pngtopnm"),
+        ("pamtotiff -lzw bits1", "tifftopnm"),
+        ("pamtotiff -flate bits1", "tifftopnm"),
+    ] {
+        assert_same_pixels(&flat, true, encoder, decoder, 0);
+    }
+}
