@@ -128,6 +128,21 @@ fn tolerance_far_below_the_precision_of_a_double_is_kept() {
 }
 
 #[test]
+fn singular_values_beyond_the_range_of_doubles_are_dropped() {
+    // Beside the first value, the third is below the smallest double.
+    let matrix = DMat3::from_diagonal(DVec3::new(2f64.powi(500), 1.0, f64::from_bits(1)));
+    for (rtol, values, rank) in
+        [(2f64.powi(-600), [2f64.powi(-500), 1.0], 2), (2f64.powi(-400), [2f64.powi(-500), 0.0], 1)]
+    {
+        let expected = DMat3::from_diagonal(DVec3::new(values[0], values[1], 0.0));
+        let answer = pseudo_inverse_with_tolerance(matrix, rtol);
+        assert_eq!((answer.rank, answer.matrix), (rank, expected), "{rtol:e}");
+    }
+    let matrix = DMat3::from_diagonal(DVec3::new(f64::MAX, f64::from_bits(1), 0.0));
+    assert_eq!(pseudo_inverse_with_tolerance(matrix, 1e-200).rank, 1);
+}
+
+#[test]
 fn without_anything_to_drop_the_answer_is_the_exact_one() {
     for (name, class) in CLASSES {
         let mut random = Random(3);

@@ -97,7 +97,7 @@ fn divided(rows: &[[Wide; 3]; 3], denominator: &Wide, exponent: i32) -> Option<D
             if lower != upper {
                 return None;
             }
-            inverse.col_mut(j)[i] = shifted(upper + 0.0, -exponent)?; // an exact zero is +0.0
+            inverse.col_mut(j)[i] = shifted(upper, -exponent)?;
         }
     }
     Some(inverse)

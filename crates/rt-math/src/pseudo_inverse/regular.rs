@@ -59,7 +59,7 @@ pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
     for k in 0..9 {
         let (lower, upper) = reciprocal.times(h[k], l[k], b[k]);
         certain &= lower == upper;
-        inverse[k] = upper + 0.0; // an exact zero is +0.0
+        inverse[k] = upper;
     }
     certain.then(|| DMat3::from_cols_array(&inverse))
 }
@@ -91,7 +91,7 @@ impl<const FMA: bool> Reciprocal<FMA> {
     }
 
     /// Two doubles, the roundings of a lower and an upper bound of the quotient: where they are equal, so is its
-    /// rounding. The numerator is within `u b` of `h + l`, and `|l| <= b`.
+    /// rounding. The numerator is within `u b` of `h + l`, and `|l| <= b`; zero, with `b = 0`, gives +0.0.
     #[inline(always)]
     pub(super) fn times(&self, h: f64, l: f64, b: f64) -> (f64, f64) {
         let (quotient, error) = two_prod::<FMA>(h, self.r);

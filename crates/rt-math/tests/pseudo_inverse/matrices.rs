@@ -90,6 +90,7 @@ pub(crate) const CLASSES: &[Class] = &[
     ("small_integers", small_integers),
     ("graded", graded),
     ("ill_conditioned", ill_conditioned),
+    ("cancelling_determinant", cancelling_determinant),
     ("rank_two", rank_two),
     ("rank_one", rank_one),
     ("rank_zero", rank_zero),
@@ -148,6 +149,14 @@ fn ill_conditioned(random: &mut Random) -> DMat3 {
     let noise = random.power(-60, -10);
     let m = m + random.matrix(Random::unit) * noise;
     m * random.power(-100, 100)
+}
+
+/// Determinants that lose some 40 bits, while the cofactors lose none: double-double just about decides the entries.
+fn cancelling_determinant(random: &mut Random) -> DMat3 {
+    let mut pair = || outer(random.vector(Random::unit), random.vector(Random::unit));
+    let m = pair() + pair();
+    let noise = random.power(-44, -34);
+    m + random.matrix(Random::unit) * noise
 }
 
 fn outer(u: DVec3, v: DVec3) -> DMat3 {
