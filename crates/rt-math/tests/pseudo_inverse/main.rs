@@ -70,3 +70,15 @@ fn answer_meets_the_penrose_conditions_within_its_rounding() {
         }
     });
 }
+
+#[test]
+fn matrices_of_every_rank_are_tested() {
+    let mut ranks = [0; 4];
+    for (_, class) in CLASSES {
+        let mut random = Random(1);
+        for _ in 0..1000 {
+            ranks[pseudo_inverse(class(&mut random)).rank] += 1;
+        }
+    }
+    assert!(ranks.iter().all(|&count| count >= 1000), "{ranks:?}");
+}

@@ -98,6 +98,7 @@ pub(crate) const CLASSES: &[Class] = &[
     ("hilbert", hilbert),
     ("any_exponent", any_exponent),
     ("any_exponent_singular", any_exponent_singular),
+    ("both_ends", both_ends),
     ("ends_of_the_range", ends_of_the_range),
     ("subnormal", subnormal),
     ("sparse", sparse),
@@ -258,6 +259,18 @@ fn any_exponent_singular(random: &mut Random) -> DMat3 {
         1 => DMat3::from_cols(two[0], two[1], two[0]),
         _ => DMat3::from_cols(two[0], -two[0], two[0]),
     };
+    random.shuffled(m)
+}
+
+/// The largest and the smallest doubles in one matrix: the longest integers. Regular, or a column twice.
+fn both_ends(random: &mut Random) -> DMat3 {
+    let entry = |r: &mut Random| match r.integer(0, 3) {
+        0 => r.sign() * f64::from_bits(r.bits() % 16),
+        1 => r.sign() * f64::MAX,
+        _ => r.sign() * f64::from_bits(f64::MAX.to_bits() - r.bits() % (1 << 53)),
+    };
+    let [u, v, w] = [(); 3].map(|()| random.vector(entry));
+    let m = DMat3::from_cols(u, v, if random.one_in(2) { u } else { w });
     random.shuffled(m)
 }
 
