@@ -9,8 +9,8 @@
 //! ```
 //!
 //! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every
-//! case here; `exact.rs` decides the rest. A root is found as `c / q` or `q / a` with `q = |b| + sqrt(Delta)`, so that
-//! nothing cancels, and one Newton step on the compensated residual `|w + t d|² - r²` brings out the last bits.
+//! case here; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
+//! that cancel as well, from a Newton step on the residual `|w + t d|² - r²`, which is computed to twice the precision.
 
 mod exact;
 
@@ -90,30 +90,35 @@ impl Sphere {
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
         let prepared = PreparedRay::new(ray, within);
-        match self.line(&prepared) {
-            Line::Misses => None,
-            Line::Crosses(crossing) => {
-                let near = crossing.near();
-                let root = if near.low() > prepared.start {
-                    exact::near_root(self, ray, prepared.square, near.t)
-                } else if near.high() < prepared.start {
-                    exact::far_root(self, ray, prepared.square, crossing.far().t)
-                } else {
-                    None
-                };
-                match root {
-                    Some(t) => holds(&prepared.within(), t).then_some(t),
-                    None => exact::closest(self, ray, prepared.within()),
-                }
-            }
-            Line::Unsure => exact::closest(self, ray, prepared.within()),
+        let root = match self.line(&prepared) {
+            Line::Misses => return None,
+            Line::Crosses(crossing) => match crossing.first(&prepared) {
+                First::Near => exact::near_root(self, ray, prepared.square, prepared.reach, crossing.near()),
+                First::Far => exact::far_root(self, ray, prepared.square, prepared.reach, crossing.far()),
+                First::None => return None,
+                First::Unsure => None,
+            },
+            Line::Unsure => None,
+        };
+        match root {
+            Some(t) => holds(&prepared.within(), t).then_some(t),
+            None => exact::closest(self, ray, prepared.within()),
         }
     }
 
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        self.candidate(&PreparedRay::new(ray, within), f64::INFINITY).is_some()
+        let prepared = PreparedRay::new(ray, within);
+        match self.line(&prepared) {
+            Line::Misses => false,
+            Line::Crosses(crossing) => match crossing.first(&prepared) {
+                First::None => false,
+                First::Near | First::Far if prepared.end == f64::INFINITY => true,
+                _ => self.offer(&crossing, &prepared, f64::INFINITY).is_some(),
+            },
+            Line::Unsure => exact::closest(self, ray, prepared.within()).is_some(),
+        }
     }
 
     /// Returns where the whole line meets the surface, in ascending order.
@@ -125,8 +130,8 @@ impl Sphere {
         match self.line(&prepared) {
             Line::Misses => Roots::None,
             Line::Crosses(crossing) => {
-                let near = exact::near_root(self, ray, prepared.square, crossing.near().t);
-                let far = exact::far_root(self, ray, prepared.square, crossing.far().t);
+                let near = exact::near_root(self, ray, prepared.square, prepared.reach, crossing.near());
+                let far = exact::far_root(self, ray, prepared.square, prepared.reach, crossing.far());
                 match (near, far) {
                     (Some(near), Some(far)) => Roots::Two(near, far),
                     _ => exact::roots(self, ray),
@@ -183,17 +188,20 @@ impl Sphere {
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
         match self.line(prepared) {
             Line::Misses => None,
-            Line::Crosses(crossing) => {
-                let mut root = crossing.near();
-                if root.high() < prepared.start {
-                    root = crossing.far();
-                }
-                prepared.admit((root.low(), root.high()), limit, || {
-                    self.exact_candidate(prepared.ray, prepared.within(), limit)
-                })
-            }
+            Line::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
+    }
+
+    /// Returns the candidate of a line that crosses the surface.
+    #[inline(always)]
+    fn offer(&self, crossing: &Crossing, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+        let error = crossing.error();
+        let near = crossing.near();
+        let t = if near + error < prepared.start { crossing.far() } else { near };
+        prepared.admit((t - error, t + error), limit, || {
+            self.exact_candidate(prepared.ray, prepared.within(), limit)
+        })
     }
 
     #[cold]
@@ -222,18 +230,16 @@ impl Sphere {
         if delta < -error {
             return Line::Misses;
         }
-        // Sixteen times the bound, so that the square root has some bits too.
-        if delta > 16.0 * error {
+        if delta > error {
             let b = w.dot(d);
-            let root = delta.sqrt();
-            let q = b.abs() + root;
             let w_square = w.length_squared();
             return Line::Crosses(Crossing {
                 b,
-                q,
-                q_error: 7.0 * U * product + 2.0 * U * q + error / root,
+                b_error: 7.0 * U * product,
                 c: w_square - radius_square,
-                c_error: 7.0 * U * (w_square + radius_square) + UNDERFLOW,
+                c_error: 14.0 * U * (w_square + radius_square) + UNDERFLOW,
+                root: delta.sqrt(),
+                delta_error: error,
                 inverse_a: prepared.inverse_square,
             });
         }
@@ -248,62 +254,71 @@ enum Line {
     Unsure,
 }
 
-/// The coefficients of `a t² + 2 b t + c`, with bounds of their errors, for a line that surely crosses the surface twice.
+/// `a t² + 2 b t + c` with bounds of the errors, for a line that surely crosses the surface twice.
 struct Crossing {
     b: f64,
-    /// `|b| + sqrt(Delta)`, within `q_error`, which is less than a third of it.
-    q: f64,
-    q_error: f64,
+    b_error: f64,
     c: f64,
+    /// Twice the bound.
     c_error: f64,
+    /// `sqrt(Delta)`
+    root: f64,
+    /// That of `Delta`, less than `Delta` itself.
+    delta_error: f64,
     inverse_a: f64,
 }
 
-/// A root and a bound of its error.
-struct Approximate {
-    t: f64,
-    error: f64,
-}
-
-impl Approximate {
-    #[inline(always)]
-    fn low(&self) -> f64 {
-        self.t - self.error
-    }
-
-    #[inline(always)]
-    fn high(&self) -> f64 {
-        self.t + self.error
-    }
+/// Which root is the first not before the start of the range.
+enum First {
+    Near,
+    Far,
+    /// Both are before it.
+    None,
+    Unsure,
 }
 
 impl Crossing {
-    /// The root where the line enters.
+    /// Approximately where the line enters.
     #[inline(always)]
-    fn near(&self) -> Approximate {
-        if self.b < 0.0 { self.c_over_q(1.0) } else { self.q_over_a(-1.0) }
+    fn near(&self) -> f64 {
+        (-self.b - self.root) * self.inverse_a
     }
 
-    /// The root where it leaves.
+    /// Approximately where it leaves.
     #[inline(always)]
-    fn far(&self) -> Approximate {
-        if self.b < 0.0 { self.q_over_a(1.0) } else { self.c_over_q(-1.0) }
+    fn far(&self) -> f64 {
+        (-self.b + self.root) * self.inverse_a
+    }
+
+    /// A bound of the error of both, and of the roundings when it is added to them or subtracted.
+    #[inline(always)]
+    fn error(&self) -> f64 {
+        let size = (self.b.abs() + self.root) * self.inverse_a;
+        let error = self.b_error + self.delta_error / self.root;
+        1.05 * error * self.inverse_a + 10.0 * U * size + UNDERFLOW_T
     }
 
     #[inline(always)]
-    fn c_over_q(&self, sign: f64) -> Approximate {
-        let inverse_q = 1.0 / self.q;
-        let t = sign * (self.c * inverse_q);
-        let error =
-            1.5 * (t.abs() * self.q_error + self.c_error) * inverse_q + 4.0 * U * t.abs() + UNDERFLOW_T;
-        Approximate { t, error }
-    }
-
-    #[inline(always)]
-    fn q_over_a(&self, sign: f64) -> Approximate {
-        let t = sign * (self.q * self.inverse_a);
-        let error = 1.1 * self.q_error * self.inverse_a + 8.0 * U * t.abs() + UNDERFLOW_T;
-        Approximate { t, error }
+    fn first(&self, prepared: &PreparedRay) -> First {
+        // From +0.0 on, the signs of the coefficients tell: of the roots' product c / a and, if it is positive, of their
+        // sum -2 b / a. `docs/numerics.md` shows that the sign of b is then certain.
+        if prepared.start.to_bits() == 0 && self.c.abs() > self.c_error {
+            return match (self.c < 0.0, self.b < 0.0) {
+                (true, _) => First::Far,
+                (false, true) => First::Near,
+                (false, false) => First::None,
+            };
+        }
+        let error = self.error();
+        if self.near() - error > prepared.start {
+            First::Near
+        } else if self.near() + error < prepared.start && self.far() - error > prepared.start {
+            First::Far
+        } else if self.far() + error < prepared.start {
+            First::None
+        } else {
+            First::Unsure
+        }
     }
 }
 

@@ -17,70 +17,98 @@ const FARTHEST: f64 = f64::from_bits((1023 + 400) << 52);
 
 fma_dispatch! {
     /// Returns the correctly rounded root where the line enters, from an approximation, or `None` if it takes more.
-    pub(super) fn near_root(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> = near_kernel;
+    pub(super) fn near_root(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> = near_kernel;
 }
 
 fma_dispatch! {
     /// Returns the correctly rounded root where the line leaves, from an approximation, or `None` if it takes more.
-    pub(super) fn far_root(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> = far_kernel;
+    pub(super) fn far_root(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> = far_kernel;
 }
 
 #[inline(always)]
-fn near_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> {
-    newton::<FMA>(sphere, ray, a, t, -1.0)
+fn near_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> {
+    newton::<FMA>(sphere, ray, a, reach, t, -1.0)
 }
 
 #[inline(always)]
-fn far_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, t: f64) -> Option<f64> {
-    newton::<FMA>(sphere, ray, a, t, 1.0)
+fn far_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> {
+    newton::<FMA>(sphere, ray, a, reach, t, 1.0)
 }
 
-/// One Newton step from `t` on `f(t) = |w + t d|² - r²`, with `f` good to about 100 bits, and the rounding test.
+/// The longest Newton step, relative to `t`, that may be the last: `2^-40` for the first step, `2^-52` for a second one, whose
+/// bound is so much tighter.
+const LAST_STEP: [f64; 2] = [f64::from_bits((1023 - 40) << 52), f64::EPSILON];
+
+/// The errors of the residual, and of half its slope, relative to the square of the largest term and to that term
+/// times the direction.
+const F_ERROR: f64 = 1024.0 * U * U;
+const G_ERROR: f64 = 64.0 * U;
+
+/// Newton steps from `t` on `f(t) = |w + t d|² - r²`, with `f` good to about 100 bits, and the rounding test.
 ///
-/// Nothing is assumed about how good `t` is: the step is accepted only if its size, the curvature `a` of `f` and the
+/// Nothing is assumed about how good `t` is: a step is the last one if its length, the curvature `a` of `f` and the
 /// slope prove that a root lies where it leads. `slope` is the sign of `f'` there: -1 where the line enters, +1 where it
-/// leaves, so that the root is the one asked for. Section 5 of `docs/numerics.md` proves the bounds.
+/// leaves, so that the root is the one asked for. Section 5 of `docs/numerics.md` proves the bounds. They do not wait
+/// for the residual, which takes longest to compute.
 #[inline(always)]
-fn newton<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, t: f64, slope: f64) -> Option<f64> {
+fn newton<const FMA: bool>(
+    sphere: &Sphere,
+    ray: &Ray,
+    a: f64,
+    reach: f64,
+    mut t: f64,
+    slope: f64,
+) -> Option<f64> {
     let (o, c, d, r) = (ray.origin(), sphere.center, ray.direction(), sphere.radius);
-    // p = w + t d as high + low per component; `terms` bounds the two terms of each sum.
-    let component = |o: f64, c: f64, d: f64| {
-        let (w, w_low) = two_diff(o, c);
-        let (step, step_low) = two_prod::<FMA>(t, d);
-        let (high, error) = two_sum(w, step);
-        (high, error + (w_low + step_low), w.abs() + step.abs())
-    };
-    let (x, x_low, x_terms) = component(o.x, c.x, d.x);
-    let (y, y_low, y_terms) = component(o.y, c.y, d.y);
-    let (z, z_low, z_terms) = component(o.z, c.z, d.z);
-    let terms = larger(x_terms, larger(y_terms, z_terms));
+    // One step is enough but for a sphere far beyond its radius, or a root that cancels.
+    for last_step in LAST_STEP {
+        // p = w + t d as high + low per component; no term of these sums is larger than `largest`.
+        let component = |o: f64, c: f64, d: f64| {
+            let (w, w_low) = two_diff(o, c);
+            let (step, step_low) = two_prod::<FMA>(t, d);
+            let (high, error) = two_sum(w, step);
+            (high, error + (w_low + step_low), larger(w.abs(), step.abs()))
+        };
+        let (x, x_low, x_term) = component(o.x, c.x, d.x);
+        let (y, y_low, y_term) = component(o.y, c.y, d.y);
+        let (z, z_low, z_term) = component(o.z, c.z, d.z);
+        let largest = larger(larger(x_term, y_term), larger(z_term, r));
 
-    let (xx, xx_low) = two_prod::<FMA>(x, x);
-    let (yy, yy_low) = two_prod::<FMA>(y, y);
-    let (zz, zz_low) = two_prod::<FMA>(z, z);
-    let (rr, rr_low) = two_prod::<FMA>(r, r);
-    // The two largest squares may be any; r² comes last, where everything but the residual cancels.
-    let (sum, e1) = two_sum(xx, yy);
-    let (sum, e2) = two_sum(sum, zz);
-    let (sum, e3) = two_sum(sum, -rr);
-    let crossed = x_low * (2.0 * x + x_low) + (y_low * (2.0 * y + y_low) + z_low * (2.0 * z + z_low));
-    let low = ((xx_low + yy_low) + (zz_low - rr_low)) + ((e1 + e2) + (e3 + crossed));
-    let f = sum + low;
+        // Half the slope, and the bounds.
+        let g = slope * (x * d.x + y * d.y + z * d.z);
+        let inverse_g = 1.0 / g;
+        let f_error = F_ERROR * (largest * largest) + UNDERFLOW;
+        let g_error = G_ERROR * (reach * largest) + UNDERFLOW;
+        let last = last_step * t.abs();
+        let slack = (0.6 * f_error + 1.2 * last * g_error) * inverse_g;
+        let longest = last + slack;
+        let curvature = 2.4 * a * longest * inverse_g;
+        let error = slack + (0.4 * curvature + 8.0 * U) * longest + UNDERFLOW_T;
 
-    let size = x.abs() + y.abs() + z.abs();
-    let f_error = 64.0 * U * U * ((xx + yy + zz + rr) + terms * (size + 4.0 * U * terms)) + UNDERFLOW;
-    let g = x * d.x + y * d.y + z * d.z;
-    let g_error = 8.0 * U * max_abs(d) * (size + terms) + UNDERFLOW;
+        // |p|² - r²: squares, then (x² + y²) + (z² - r²), each step with its error.
+        let (xx, xx_low) = two_prod::<FMA>(x, x);
+        let (yy, yy_low) = two_prod::<FMA>(y, y);
+        let (zz, zz_low) = two_prod::<FMA>(z, z);
+        let (rr, rr_low) = two_prod::<FMA>(r, r);
+        let (sum, e1) = two_sum(xx, yy);
+        let (rest, e2) = two_sum(zz, -rr);
+        let (sum, e3) = two_sum(sum, rest);
+        let crossed = x_low * (2.0 * x + x_low) + y_low * (2.0 * y + y_low) + z_low * (2.0 * z + z_low);
+        let low = ((xx_low + yy_low) + (zz_low - rr_low)) + ((e1 + e2) + (e3 + crossed));
+        let step = (sum + low) * (-0.5 * slope * inverse_g);
 
-    let inverse_g = 1.0 / (slope * g);
-    let step = -0.5 * (slope * f) * inverse_g;
-    let slack = (0.6 * f_error + 1.2 * step.abs() * g_error) * inverse_g;
-    let longest = step.abs() + slack;
-    let curvature = 2.4 * a * longest * inverse_g;
-    let error = slack + (0.4 * curvature + 8.0 * U) * longest + UNDERFLOW_T;
-    // All of it false for NaN.
-    let proved = 8.0 * g_error <= slope * g && curvature <= 0.125 && terms + r <= FARTHEST;
-    if proved { round_if_certain(t, step, error) } else { None }
+        // False for NaN.
+        if !(8.0 * g_error <= g && curvature <= 0.125 && largest <= FARTHEST) {
+            return None;
+        }
+        if step.abs() <= last
+            && let Some(rounded) = round_if_certain(t, step, error)
+        {
+            return Some(rounded);
+        }
+        t += step;
+    }
+    None
 }
 
 /// Returns the closest root in the range, whatever it takes.
