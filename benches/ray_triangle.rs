@@ -135,7 +135,7 @@ fn ray_triangle(criterion: &mut Criterion) {
         bench!("any", cases, |ray: &Ray, triangle: &Triangle| triangle.any(ray, all.clone()));
         bench!("closest", cases, |ray: &Ray, triangle: &Triangle| triangle.closest(ray, all.clone()));
         bench!("closest_and_weights", cases, |ray: &Ray, triangle: &Triangle| {
-            triangle.closest(ray, all.clone()).map(|t| (t, triangle.hit_barycentric(ray)))
+            triangle.closest_with_barycentric(ray, all.clone())
         });
         bench!("verdict", cases, |ray: &Ray, triangle: &Triangle| triangle.verdict(ray));
         bench!("crosses", cases, |ray: &Ray, triangle: &Triangle| triangle.crosses(ray));

@@ -11,7 +11,7 @@ use rt_math::exact::{DoubleDouble, Dyadic};
 
 use crate::Triangle;
 use crate::ray::{larger, max_abs};
-use crate::triangle::exact::{Pair, integer_cross, integer_difference, integer_dot, rounded_quotient};
+use crate::triangle::exact::{Divisor, Pair, integer_cross, integer_difference, integer_dot};
 
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
@@ -160,10 +160,8 @@ fn double_double_weights(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> 
     let (turns, square) = double_double_turns(point, triangle);
     let relative = 544.0 * U * U * (edge * edge * edge);
     let pair = |x: Number| Pair { high: x.high(), low: x.low() };
-    let weight = |turn: Number| {
-        let (turn_error, square_error) = (relative * far + UNDERFLOW, relative * edge + UNDERFLOW);
-        rounded_quotient::<false>(pair(turn), turn_error, pair(square), square_error)
-    };
+    let divisor = Divisor::new(pair(square), relative * edge + UNDERFLOW);
+    let weight = |turn: Number| divisor.divide::<false>(pair(turn), relative * far + UNDERFLOW);
     Some([weight(turns[0])?, weight(turns[1])?, weight(turns[2])?])
 }
 

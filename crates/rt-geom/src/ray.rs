@@ -46,16 +46,15 @@ impl Ray {
 
 /// A ray and a range, with what every shape's test needs computed once.
 ///
-/// `reach` and `square` serve the filters, which are proved for directions whose largest component lies between
-/// 2^-100 and 2^100. For any other direction `reach` is NaN: every comparison with an error bound then fails, and
-/// the exact path decides.
+/// The filters are proved for directions whose largest component lies between 2^-100 and 2^100. For any other direction
+/// `reach` and `square` are NaN: every comparison with an error bound then fails, and the exact path decides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PreparedRay<'a> {
     pub(crate) ray: &'a Ray,
     /// The range of `t` that counts, as in `holds`.
     pub(crate) start: f64,
     pub(crate) end: f64,
-    /// The largest component of the direction in magnitude, or NaN.
+    /// The largest component of the direction in magnitude.
     pub(crate) reach: f64,
     /// `direction . direction` and its reciprocal, rounded.
     pub(crate) square: f64,
@@ -68,7 +67,7 @@ impl<'a> PreparedRay<'a> {
         const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
         let reach = max_abs(ray.direction);
         let reach = if (1.0 / LONGEST..=LONGEST).contains(&reach) { reach } else { f64::NAN };
-        let square = ray.direction.length_squared();
+        let square = if reach.is_nan() { reach } else { ray.direction.length_squared() };
         Self { ray, start: within.start, end: within.end, reach, square, inverse_square: 1.0 / square }
     }
 
@@ -137,6 +136,12 @@ fn holds_at_the_ends(within: &Range<f64>, t: f64) -> bool {
 #[inline(always)]
 pub(crate) fn larger(x: f64, y: f64) -> f64 {
     if x > y { x } else { y }
+}
+
+/// The smaller number; the second if either is NaN.
+#[inline(always)]
+pub(crate) fn smaller(x: f64, y: f64) -> f64 {
+    if x < y { x } else { y }
 }
 
 /// The largest magnitude of a component.

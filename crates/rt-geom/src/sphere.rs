@@ -219,25 +219,20 @@ impl Sphere {
         let d = prepared.ray.direction();
         let w = prepared.ray.origin() - self.center;
         let x = w.cross(d);
-        let x_square = x.length_squared();
-        let radius_square = self.radius * self.radius;
-        let reach_square = prepared.square * radius_square;
-        let delta = reach_square - x_square;
-        // Bounds every |w_j d_k| + |w_k d_j|.
-        let product = 2.0 * prepared.reach * max_abs(w);
-        let permanent = product * ((x.x.abs() + x.y.abs() + x.z.abs()) + 8.0 * U * product);
-        let error = 7.0 * U * ((reach_square + x_square) + permanent) + UNDERFLOW;
+        let (w_square, radius_square) = (w.length_squared(), self.radius * self.radius);
+        let delta = prepared.square * radius_square - x.length_squared();
+        let squares = U * (w_square + radius_square);
+        let error = prepared.square * (17.0 * squares) + UNDERFLOW;
         if delta < -error {
             return Line::Misses;
         }
         if delta > error {
-            let b = w.dot(d);
-            let w_square = w.length_squared();
+            let products = w * d;
             return Line::Crosses(Crossing {
-                b,
-                b_error: 7.0 * U * product,
+                b: (products.x + products.y) + products.z,
+                b_error: 4.2 * U * ((products.x.abs() + products.y.abs()) + products.z.abs()),
                 c: w_square - radius_square,
-                c_error: 14.0 * U * (w_square + radius_square) + UNDERFLOW,
+                c_error: 14.0 * squares + UNDERFLOW,
                 root: delta.sqrt(),
                 delta_error: error,
                 inverse_a: prepared.inverse_square,

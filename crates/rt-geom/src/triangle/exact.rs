@@ -65,22 +65,35 @@ pub(crate) fn dot<const FMA: bool>(v: &Pairs, w: &Pairs) -> Pair {
     Pair { high, low: (x_low + y_low) + (z_low + (e1 + e2)) }
 }
 
-/// Returns the correctly rounded quotient, or `None` if the errors of the operands leave it open.
-///
-/// The operands are pairs with bounds of their errors, which include all underflow.
-#[inline(always)]
-pub(crate) fn rounded_quotient<const FMA: bool>(n: Pair, n_error: f64, d: Pair, d_error: f64) -> Option<f64> {
-    let t = n.high / d.high;
-    let (product, product_low) = two_prod::<FMA>(t, d.high);
-    // The remainder of a correctly rounded quotient is a double: nothing is rounded before the low parts come in.
-    let rest = ((n.high - product) - product_low) + (n.low - t * d.low);
-    let inverse = 1.0 / d.high.abs();
-    let step = rest / d.high;
-    let relative = (d.low.abs() + d_error) * inverse;
-    let low_parts = n.low.abs() + t.abs() * d.low.abs();
-    let absolute = (n_error + t.abs() * d_error + 3.0 * U * low_parts) * inverse;
-    let error = 1.2 * (absolute + step.abs() * relative) + 4.0 * U * step.abs() + UNDERFLOW_T;
-    if relative <= 0.125 { round_if_certain(t, step, error) } else { None }
+/// A divisor: a pair, a bound of its error, which includes all underflow, and the reciprocal of the high part.
+#[derive(Clone, Copy)]
+pub(crate) struct Divisor {
+    pair: Pair,
+    error: f64,
+    inverse: f64,
+}
+
+impl Divisor {
+    #[inline(always)]
+    pub(crate) fn new(pair: Pair, error: f64) -> Self {
+        Self { pair, error, inverse: 1.0 / pair.high }
+    }
+
+    /// Returns `n / self`, correctly rounded, or `None` if the errors leave it open; `n` is off by at most `n_error`.
+    #[inline(always)]
+    pub(crate) fn divide<const FMA: bool>(&self, n: Pair, n_error: f64) -> Option<f64> {
+        let Self { pair: d, error: d_error, inverse } = *self;
+        let t = n.high * inverse;
+        let (product, product_low) = two_prod::<FMA>(t, d.high);
+        // The first difference is exact, since `t` is within a few units in the last place.
+        let rest = ((n.high - product) - product_low) + (n.low - t * d.low);
+        let step = rest * inverse;
+        let relative = (d.low.abs() + d_error) * inverse.abs();
+        let low_parts = n.low.abs() + t.abs() * d.low.abs();
+        let absolute = (n_error + t.abs() * d_error + 3.0 * U * low_parts) * inverse.abs();
+        let error = 1.2 * (absolute + step.abs() * relative) + 8.0 * U * step.abs() + UNDERFLOW_T;
+        if relative <= 0.125 { round_if_certain(t, step, error) } else { None }
+    }
 }
 
 fma_dispatch! {
@@ -101,7 +114,7 @@ fn t_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<f64> {
     let farthest = larger(from[0].high.abs(), larger(from[1].high.abs(), from[2].high.abs()));
     let height_error = relative * farthest + UNDERFLOW;
     let slope_error = relative * max_abs(d) + UNDERFLOW;
-    rounded_quotient::<FMA>(height, height_error, slope, slope_error)
+    Divisor::new(slope, slope_error).divide::<FMA>(height, height_error)
 }
 
 fma_dispatch! {
@@ -111,37 +124,91 @@ fma_dispatch! {
 
 #[inline(always)]
 fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
-    let (volumes, error) = volumes::<FMA>(triangle, ray)?;
-    let [u, v, w] = volumes;
-    let (sum, e1) = two_sum(u.high, v.high);
-    let (high, e2) = two_sum(sum, w.high);
-    let low = (u.low + v.low) + (w.low + (e1 + e2));
-    let sum = Pair { high, low };
-    // Three times the error of a volume, and the roundings of the low part.
-    let sum_error = 5.0 * error;
-    Some([
-        rounded_quotient::<FMA>(u, error, sum, sum_error)?,
-        rounded_quotient::<FMA>(v, error, sum, sum_error)?,
-        rounded_quotient::<FMA>(w, error, sum, sum_error)?,
-    ])
+    let span = Span::new::<FMA>(triangle, ray)?;
+    let (sum, sum_error) = span.sum();
+    span.weights::<FMA>(&Divisor::new(sum, sum_error))
 }
 
-/// The three volumes with one bound of their errors; `None` out of the range where the bound holds.
+fma_dispatch! {
+    /// Returns the correctly rounded `t` and weights, or `None` if they take integers. The filter must have found a hit.
+    pub(super) fn rounded_hit(triangle: &Triangle, ray: &Ray) -> Option<(f64, [f64; 3])> = hit_kernel;
+}
+
 #[inline(always)]
-fn volumes<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<([Pair; 3], f64)> {
-    let d = ray.direction();
-    let [a, b, c] = triangle.vertices.map(|vertex| difference(vertex, ray.origin()));
-    let most = |i: usize| larger(a[i].high.abs(), larger(b[i].high.abs(), c[i].high.abs()));
-    let size = most(0) + most(1) + most(2);
-    let reach = max_abs(d);
-    let in_range = size < FARTHEST && (1e-30..=1e30).contains(&reach);
-    let error = 64.0 * U * U * reach * size * size + UNDERFLOW;
-    let beside_a = cross::<FMA>(&pairs(d), &a);
-    let beside_b = cross::<FMA>(&pairs(d), &b);
-    let u = dot::<FMA>(&beside_b, &c);
-    let v = dot::<FMA>(&beside_a, &c);
-    let w = dot::<FMA>(&beside_a, &b);
-    in_range.then_some(([u, Pair { high: -v.high, low: -v.low }, w], error))
+fn hit_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<(f64, [f64; 3])> {
+    let span = Span::new::<FMA>(triangle, ray)?;
+    let (sum, sum_error) = span.sum();
+    let weights = span.weights::<FMA>(&Divisor::new(sum, sum_error))?;
+    // t d = (u a + v b + w c) / (u + v + w), of which the longest axis is taken.
+    let d = ray.direction().to_array();
+    let z = if d[0].abs() == span.reach {
+        0
+    } else if d[1].abs() == span.reach {
+        1
+    } else {
+        2
+    };
+    let height = dot::<FMA>(&span.volumes, &[span.vertices[0][z], span.vertices[1][z], span.vertices[2][z]]);
+    let (high, low) = two_prod::<FMA>(sum.high, d[z]);
+    let slope = Pair { high, low: low + sum.low * d[z] };
+    let height_error = 7.0 * span.error * span.size + UNDERFLOW;
+    let slope_error = 6.0 * span.error * span.reach + UNDERFLOW;
+    let t = Divisor::new(slope, slope_error).divide::<FMA>(height, height_error)?;
+    Some((t, weights))
+}
+
+/// What a ray and a triangle span, in pairs.
+struct Span {
+    /// The vertices relative to the origin of the ray.
+    vertices: [Pairs; 3],
+    /// `u`, `v`, `w`, each within `error`.
+    volumes: [Pair; 3],
+    error: f64,
+    /// The sum over the axes of the largest component of the vertices.
+    size: f64,
+    /// The largest component of the direction.
+    reach: f64,
+}
+
+impl Span {
+    /// Returns `None` out of the range where the bounds hold.
+    #[inline(always)]
+    fn new<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<Self> {
+        let d = ray.direction();
+        let vertices = triangle.vertices.map(|vertex| difference(vertex, ray.origin()));
+        let [a, b, c] = &vertices;
+        let most = |i: usize| larger(a[i].high.abs(), larger(b[i].high.abs(), c[i].high.abs()));
+        let size = most(0) + most(1) + most(2);
+        let reach = max_abs(d);
+        let in_range = size < FARTHEST && (1e-30..=1e30).contains(&reach);
+        let error = 64.0 * U * U * reach * size * size + UNDERFLOW;
+        let beside_a = cross::<FMA>(&pairs(d), a);
+        let beside_b = cross::<FMA>(&pairs(d), b);
+        let u = dot::<FMA>(&beside_b, c);
+        let v = dot::<FMA>(&beside_a, c);
+        let w = dot::<FMA>(&beside_a, b);
+        let volumes = [u, Pair { high: -v.high, low: -v.low }, w];
+        in_range.then_some(Self { vertices, volumes, error, size, reach })
+    }
+
+    /// `u + v + w` and a bound of its error: three times that of a volume, and the roundings of the low parts.
+    #[inline(always)]
+    fn sum(&self) -> (Pair, f64) {
+        let [u, v, w] = self.volumes;
+        let (sum, e1) = two_sum(u.high, v.high);
+        let (high, e2) = two_sum(sum, w.high);
+        (Pair { high, low: (u.low + v.low) + (w.low + (e1 + e2)) }, 5.0 * self.error)
+    }
+
+    #[inline(always)]
+    fn weights<const FMA: bool>(&self, sum: &Divisor) -> Option<[f64; 3]> {
+        let [u, v, w] = self.volumes;
+        Some([
+            sum.divide::<FMA>(u, self.error)?,
+            sum.divide::<FMA>(v, self.error)?,
+            sum.divide::<FMA>(w, self.error)?,
+        ])
+    }
 }
 
 /// Returns the hit's `t` if it is in the range, whatever it takes.
@@ -184,8 +251,8 @@ fn verdict(signs: [Ordering; 4]) -> Option<Verdict> {
 
 /// The signs of the volumes and of their sum, in double-double, if all are certain.
 fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> {
-    let ([u, v, w], error) = volumes::<false>(triangle, ray)?;
-    let [u, v, w] = [u, v, w].map(|volume| volume.high + volume.low);
+    let Span { volumes, error, .. } = Span::new::<false>(triangle, ray)?;
+    let [u, v, w] = volumes.map(|volume| volume.high + volume.low);
     // One rounding more per volume, three for the sum.
     let sum = u + v + w;
     let certain = |x: f64, bound: f64| (x.abs() > bound).then(|| x.total_cmp(&0.0));
