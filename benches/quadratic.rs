@@ -62,20 +62,29 @@ fn stable([a, b, c]: Equation) -> Roots {
 
 fn solvers(criterion: &mut Criterion) {
     for (case, equations) in cases() {
-        let mut group = criterion.benchmark_group("quadratic");
-        group.throughput(Throughput::Elements(equations.len() as u64));
-        let mut run = |name: &str, solve: &dyn Fn(&[Equation])| {
-            group.bench_function(BenchmarkId::new(name, case), |bencher| {
-                bencher.iter(|| solve(black_box(&equations)))
-            });
-        };
-        run("textbook", &|all| all.iter().for_each(|&e| drop(black_box(textbook(e)))));
-        run("stable", &|all| all.iter().for_each(|&e| drop(black_box(stable(e)))));
-        run("rt_math", &|all| all.iter().for_each(|&[a, b, c]| drop(black_box(solve_quadratic(a, b, c)))));
-        run("kurbo", &|all| {
-            all.iter().for_each(|&[a, b, c]| drop(black_box(kurbo::common::solve_quadratic(c, b, a))));
-        });
+        measure(criterion, "textbook", case, &equations, textbook);
+        measure(criterion, "stable", case, &equations, stable);
+        measure(criterion, "rt_math", case, &equations, |[a, b, c]| solve_quadratic(a, b, c));
+        measure(criterion, "kurbo", case, &equations, |[a, b, c]| kurbo::common::solve_quadratic(c, b, a));
     }
+}
+
+fn measure<R>(
+    criterion: &mut Criterion,
+    name: &str,
+    case: &str,
+    equations: &[Equation],
+    solve: impl Fn(Equation) -> R,
+) {
+    let mut group = criterion.benchmark_group("quadratic");
+    group.throughput(Throughput::Elements(equations.len() as u64));
+    group.bench_function(BenchmarkId::new(name, case), |bencher| {
+        bencher.iter(|| {
+            for &equation in black_box(equations) {
+                black_box(solve(equation));
+            }
+        });
+    });
 }
 
 criterion_group!(benches, solvers);

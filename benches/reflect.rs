@@ -11,6 +11,9 @@ use rt_math::reflect;
 
 const COUNT: usize = 4096;
 
+/// A vector and a normal.
+type Pair = (DVec3, DVec3);
+
 /// Returns pseudo-random vectors in the cube `-1..1` from a fixed seed (xorshift64).
 fn random() -> impl FnMut() -> DVec3 {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
@@ -29,20 +32,31 @@ fn plain(v: DVec3, n: DVec3) -> DVec3 {
 
 fn reflections(criterion: &mut Criterion) {
     let mut random = random();
-    let benign: Vec<_> = (0..COUNT).map(|_| (random(), random().normalize())).collect();
-    let diagonal = (0..COUNT).map(|_| (random() * DVec3::X, DVec3::new(0.6, 0.6, 0.0))).collect();
+    let benign: Vec<Pair> = (0..COUNT).map(|_| (random(), random().normalize())).collect();
+    let diagonal: Vec<Pair> = (0..COUNT).map(|_| (random() * DVec3::X, DVec3::new(0.6, 0.6, 0.0))).collect();
     for (case, pairs) in [("benign", benign), ("diagonal", diagonal)] {
-        let mut group = criterion.benchmark_group("reflect");
-        group.throughput(Throughput::Elements(COUNT as u64));
-        let mut run = |name: &str, all: &dyn Fn(&[(DVec3, DVec3)])| {
-            group.bench_function(BenchmarkId::new(name, case), |bencher| {
-                bencher.iter(|| all(black_box(&pairs)))
-            });
-        };
-        run("plain", &|all| all.iter().for_each(|&(v, n)| drop(black_box(plain(v, n)))));
-        run("glam", &|all| all.iter().for_each(|&(v, n)| drop(black_box(v.reflect(n)))));
-        run("rt_math", &|all| all.iter().for_each(|&(v, n)| drop(black_box(reflect(v, n)))));
+        measure(criterion, "plain", case, &pairs, plain);
+        measure(criterion, "glam", case, &pairs, DVec3::reflect);
+        measure(criterion, "rt_math", case, &pairs, reflect);
     }
+}
+
+fn measure(
+    criterion: &mut Criterion,
+    name: &str,
+    case: &str,
+    pairs: &[Pair],
+    mirror: impl Fn(DVec3, DVec3) -> DVec3,
+) {
+    let mut group = criterion.benchmark_group("reflect");
+    group.throughput(Throughput::Elements(pairs.len() as u64));
+    group.bench_function(BenchmarkId::new(name, case), |bencher| {
+        bencher.iter(|| {
+            for &(v, n) in black_box(pairs) {
+                black_box(mirror(v, n));
+            }
+        });
+    });
 }
 
 criterion_group!(benches, reflections);
