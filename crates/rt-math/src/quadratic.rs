@@ -404,6 +404,25 @@ mod tests {
     }
 
     #[test]
+    fn equations_at_the_edges_of_the_windows_are_solved() {
+        let counts = check_class(29, |rng| {
+            // the exponents at which the stages and the sizes of integers change, or the extremes
+            let edges = [-1074, -1022, -450, -256, -64, 64, 256, 450, 1023];
+            let mut pick = || {
+                let exponent = (edges[rng.below(9)] + rng.integer(-2..2)).clamp(-1074, 1023);
+                rng.with_exponent(exponent..exponent + 1)
+            };
+            let (a, b, c) = (pick(), pick(), pick());
+            match rng.below(4) {
+                0 => [a, b, b / a * b / 4.0],
+                1 => [a, 2.0 * a.abs().sqrt() * c.abs().sqrt(), c.copysign(a)],
+                _ => [a, b, c],
+            }
+        });
+        assert!(counts.into_iter().all(|count| count > 1_000), "{counts:?}");
+    }
+
+    #[test]
     fn special_values_in_all_combinations_are_solved() {
         let values = [
             0.0,

@@ -244,6 +244,25 @@ mod tests {
     }
 
     #[test]
+    fn vectors_at_the_edges_of_the_windows_are_reflected_correctly() {
+        let counts = check_class(37, |rng| {
+            // the exponents at which the stages and the sizes of integers change, or the extremes
+            let edges = [-1074, -1022, -250, -64, 64, 250, 1023];
+            let mut shared = edges[rng.below(7)];
+            [0; 2].map(|_| {
+                [0; 3].map(|_| {
+                    if rng.below(3) == 0 {
+                        shared = edges[rng.below(7)];
+                    }
+                    let exponent = (shared + rng.integer(-2..2)).clamp(-1074, 1023);
+                    rng.with_exponent(exponent..exponent + 1)
+                })
+            })
+        });
+        assert!(counts.into_iter().all(|count| count > 1_000), "{counts:?}");
+    }
+
+    #[test]
     fn special_values_in_all_combinations_are_reflected_correctly() {
         let values = [0.0, -0.0, 1.0, -3.0, f64::from_bits(1), f64::MAX];
         let mut vectors = vec![];
