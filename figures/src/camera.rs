@@ -6,7 +6,7 @@
 //! `N` x `N` equal parts of it.
 
 use glam::DVec3;
-use rt_geom::{Ray, Sphere};
+use rt_geom::Ray;
 
 /// Where a picture is taken from. [`Camera::default`] is the report's camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +47,17 @@ pub enum CameraError {
 }
 
 impl Camera {
+    /// The camera for objects that come without one: along -z, moved so that everything is seen, with a field of view of
+    /// 28 degrees, so that things far from the middle are hardly stretched.
+    pub const STAGE: Self = Self {
+        eye: DVec3::ZERO,
+        forward: DVec3::NEG_Z,
+        right: DVec3::X,
+        up: DVec3::Y,
+        half_height: 0.249_328_002_843_180_7, // tan 14 degrees
+        fit: true,
+    };
+
     /// Returns the camera at `eye` that sees `look_at` in the middle of the picture and `up` upwards, with the
     /// vertical field of view `fov` in degrees.
     ///
@@ -73,7 +84,7 @@ impl Camera {
         Ok(Self { eye, forward, right, up: right.cross(forward), half_height, fit: false })
     }
 
-    /// The same camera, moved along its line of sight by [`Camera::framed`] before a picture is taken.
+    /// The same camera, moved by [`Camera::framed`] before a picture is taken.
     #[must_use]
     pub fn fitted(self) -> Self {
         Self { fit: true, ..self }
@@ -84,16 +95,32 @@ impl Camera {
         self.fit
     }
 
-    /// Returns the camera with the same directions that stands where `content` just fills a picture of
-    /// `width` x `height` pixels, with a margin of a twentieth of its radius; `None` if that place leaves the f64 range.
-    pub fn framed(&self, content: &Sphere, width: u32, height: u32) -> Option<Self> {
-        // The narrower half field of view has the tangent `tangent`; a sphere touches that cone when its centre is at
-        // radius / sin(angle) = radius sqrt(1 + 1 / tangent^2).
-        let tangent = self.half_height * (f64::from(width) / f64::from(height)).min(1.0);
-        // A single point has no size to fill the picture with; any distance shows it alike.
-        let radius = if content.radius() > 0.0 { 1.05 * content.radius() } else { 1.0 };
-        let distance = radius * (1.0 + 1.0 / (tangent * tangent)).sqrt();
-        let eye = content.center() - distance * self.forward;
+    /// Returns the camera with the same directions that stands where `balls`, each a center and a radius, just fill a
+    /// picture of `width` x `height` pixels, with a margin of a twentieth on each side.
+    ///
+    /// `None` if there are none, or if that place leaves the f64 range.
+    ///
+    /// The picture's edges are four planes through the eye. Two of them, left and right, make a wedge; pushed against
+    /// the balls from both sides it stands at one place and depth, and so does the wedge of the other two. The eye takes
+    /// its place across from each, and its depth from the one that is farther back.
+    pub fn framed(&self, balls: impl Iterator<Item = (DVec3, f64)>, width: u32, height: u32) -> Option<Self> {
+        let vertical = self.half_height / 1.1;
+        let tangents = [vertical * f64::from(width) / f64::from(height), vertical];
+        let across = [self.right, self.up];
+        // A ball at (x, z) is on the inner side of the wedge's planes through (X, Z) iff
+        //   tangent (z - Z) -+ (x - X) >= radius sqrt(1 + tangent^2).
+        let mut limits = [[f64::NEG_INFINITY; 2]; 2];
+        for (center, radius) in balls {
+            let z = center.dot(self.forward);
+            for axis in 0..2 {
+                let x = center.dot(across[axis]);
+                let reach = radius * (1.0 + tangents[axis] * tangents[axis]).sqrt() - tangents[axis] * z;
+                limits[axis] = [limits[axis][0].max(reach + x), limits[axis][1].max(reach - x)];
+            }
+        }
+        let depth = |axis: usize| -(limits[axis][0] + limits[axis][1]) / (2.0 * tangents[axis]);
+        let place = |axis: usize| (limits[axis][0] - limits[axis][1]) / 2.0;
+        let eye = place(0) * self.right + place(1) * self.up + depth(0).min(depth(1)) * self.forward;
         eye.is_finite().then_some(Self { eye, ..*self })
     }
 
@@ -229,15 +256,33 @@ mod tests {
     }
 
     #[test]
-    fn a_fitted_sphere_touches_the_narrower_edge_up_to_the_margin() {
-        let content = Sphere::new(DVec3::new(3.0, -2.0, 40.0), 2.5).unwrap();
-        for (width, height) in [(64, 48), (48, 64), (10, 10)] {
-            let camera = Camera::default().framed(&content, width, height).unwrap();
-            let distance = camera.eye().distance(content.center());
-            let half = (f64::from(width) / f64::from(height)).min(1.0).atan();
-            let seen = (content.radius() * 1.05 / distance).asin();
-            assert!((seen - half).abs() < 1e-12, "{width} x {height}: {seen} against {half}");
+    fn fitted_balls_touch_the_narrower_edges_up_to_the_margin() {
+        let balls = [
+            (DVec3::new(3.0, -2.0, 40.0), 2.5),
+            (DVec3::new(-7.0, 1.0, 38.0), 0.5),
+            (DVec3::new(2.0, 9.0, 51.0), 0.0),
+        ];
+        let turned = Camera::new(DVec3::X, DVec3::new(-3.0, 2.0, 9.0), DVec3::Y, 50.0).unwrap();
+        for (camera, width, height) in
+            [(Camera::default(), 64, 48), (Camera::STAGE, 48, 64), (turned, 10, 10), (turned, 500, 10)]
+        {
+            let framed = camera.framed(balls.into_iter(), width, height).unwrap();
+            let [right, up, forward] = framed.axes();
+            // How far the balls keep from each of the four planes of the picture with its margin.
+            let gaps = [right, -right, up, -up].map(|side| {
+                let aspect = f64::from(width) / f64::from(height);
+                let tangent = framed.half_height / 1.1 * if side.dot(up) == 0.0 { aspect } else { 1.0 };
+                let inward = (tangent * forward - side).normalize();
+                let gap = |(center, radius): (DVec3, f64)| inward.dot(center - framed.eye()) - radius;
+                balls.into_iter().map(gap).fold(f64::INFINITY, f64::min)
+            });
+            assert!(gaps.iter().all(|gap| *gap > -1e-12), "{width} x {height}: {gaps:?}");
+            let touches = |gaps: &[f64]| gaps.iter().all(|gap| gap.abs() < 1e-12);
+            assert!(touches(&gaps[..2]) || touches(&gaps[2..]), "{width} x {height}: {gaps:?}");
+            let centred = (gaps[0] - gaps[1]).abs() < 1e-12 && (gaps[2] - gaps[3]).abs() < 1e-12;
+            assert!(centred, "{width} x {height}: {gaps:?}");
         }
+        assert_eq!(Camera::default().framed(std::iter::empty(), 64, 48), None);
     }
 
     #[test]

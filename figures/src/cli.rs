@@ -42,9 +42,9 @@ struct Arguments {
 enum Command {
     /// List the six figures
     List,
-    /// Draw a scene file
+    /// Draw a scene, or a file of spheres
     Render {
-        /// The scene, in TOML
+        /// A scene in TOML, or spheres in XYZ
         scene: PathBuf,
         #[command(flatten)]
         options: DrawOptions,
@@ -181,12 +181,12 @@ pub enum Failure {
     /// It was asked for something that makes no sense.
     Usage(String),
     /// Something went wrong; the causes are told one after the other.
-    Failed(Box<dyn Error>),
+    Failed(Box<dyn Error + Send + Sync>),
     /// Whoever reads stdout has had enough.
     PipeClosed,
 }
 
-impl<E: Error + 'static> From<E> for Failure {
+impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
         Self::Failed(Box::new(error))
     }

@@ -18,7 +18,7 @@ use crate::figure::Figure;
 use crate::output::Target;
 use crate::render::{self, AHEAD, Renderer};
 use crate::scene::Scene;
-use crate::scene_file::{self, SceneError};
+use crate::{import, scene_file};
 
 /// Work that ends sooner than this shows no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -56,7 +56,7 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
         return Err(Failure::Usage("six pictures need a folder: --out DIR".to_owned()));
     }
     let pool = pool(options)?;
-    figures.iter().try_for_each(|figure| draw(&figure.name(), || figure.scene(), folder, options, &pool))
+    figures.iter().try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), folder, options, &pool))
 }
 
 /// Draws the scene file at `path`.
@@ -66,7 +66,15 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
 pub fn scene_file(path: &Path, options: &DrawOptions) -> Result<(), Failure> {
     let name =
         path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    draw(&name, || scene_file::load(path), false, options, &pool(options)?)
+    draw(&name, || load(path), false, options, &pool(options)?)
+}
+
+/// Reads a scene file, or a bulk file on a stage.
+fn load(path: &Path) -> Result<Scene, Failure> {
+    match import::load(path) {
+        Some(scene) => Ok(scene?),
+        None => Ok(scene_file::load(path)?),
+    }
 }
 
 fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
@@ -79,13 +87,19 @@ fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
 
 fn draw(
     name: &str,
-    load: impl FnOnce() -> Result<Scene, SceneError>,
+    load: impl FnOnce() -> Result<Scene, Failure> + Send,
     folder: bool,
     options: &DrawOptions,
     pool: &ThreadPool,
 ) -> Result<(), Failure> {
     let start = Instant::now();
-    let scene = load()?;
+    let scene = pool.install(load)?;
+    if !options.quiet {
+        for warning in &scene.warnings {
+            // A warning that nobody can read is no reason to fail.
+            let _ = writeln!(io::stderr(), "warning: {warning}");
+        }
+    }
     let (spheres, triangles) = (scene.spheres.len(), scene.triangles.len());
     let PictureSize { width, height } = options.size;
     let view = view(&scene, options.size, options.samples)?;
@@ -140,7 +154,7 @@ fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure>
     let PictureSize { width, height } = size;
     scene
         .view(Size { width, height, samples })
-        .ok_or_else(|| Failure::Failed("the camera cannot fit the scene: no finite sphere holds it".into()))
+        .ok_or_else(|| Failure::Failed("the camera cannot fit the scene: it is too large".into()))
 }
 
 /// Prints how many sphere tests the report's tree makes for the picture of a scene, beside the plain loop.
@@ -151,7 +165,10 @@ fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure>
 /// What is wrong with the scene, or a failed write.
 pub fn count_tests(scene: &Path, size: PictureSize) -> Result<(), Failure> {
     let figure = scene.to_str().and_then(|text| text.parse().ok()).and_then(Figure::numbered);
-    let scene = figure.map_or_else(|| scene_file::load(scene), Figure::scene)?;
+    let scene = match figure {
+        Some(figure) => figure.scene()?,
+        None => load(scene)?,
+    };
     let view = view(&scene, size, 1)?;
     let objects = scene.len() as u64;
     let tree = HalvingTree::new(scene.spheres, scene.triangles);

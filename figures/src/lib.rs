@@ -21,6 +21,7 @@ pub mod cli;
 pub mod convert;
 pub mod draw;
 pub mod figure;
+pub mod import;
 pub mod output;
 pub mod render;
 pub mod scene;

@@ -3,11 +3,15 @@
 //! A scene is plain data; the way from a file to it ([`crate::scene_file`]) does all the checking. Its objects have one
 //! order, which decides equal distances: spheres as listed, bulk files in order, triangles as listed, meshes in order.
 
+use std::path::Path;
+
 use glam::DVec3;
-use rt_geom::{Sphere, Triangle, enclosing_sphere};
+use rt_geom::{Sphere, Triangle};
 use rt_shade::{Material, PointLight, Texture};
 
 use crate::camera::{Camera, Size, View};
+use crate::import::obj::Mesh;
+use crate::import::xyz::Spheres;
 
 /// Everything that a picture depends on, besides its size.
 #[derive(Debug)]
@@ -31,6 +35,8 @@ pub struct Scene {
     /// For each triangle that has them, the colours at its vertices; they take the place of the look's colour.
     /// Empty when no triangle has any, else as long as `triangles`.
     pub vertex_colors: Vec<Option<[DVec3; 3]>>,
+    /// What whoever draws the scene should know, though it is no error.
+    pub warnings: Vec<String>,
 }
 
 impl Scene {
@@ -46,6 +52,7 @@ impl Scene {
             triangles: Vec::new(),
             triangle_looks: Vec::new(),
             vertex_colors: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 
@@ -59,26 +66,71 @@ impl Scene {
         self.len() == 0
     }
 
-    /// Returns the minimal sphere around everything in the scene; `None` if it is empty or no finite sphere holds it.
-    pub fn content(&self) -> Option<Sphere> {
-        let corners = self.triangles.iter().flat_map(Triangle::vertices);
-        let corners = corners.filter_map(|corner| Sphere::new(corner, 0.0)); // a vertex is always finite
-        let enclosing = if self.triangles.is_empty() {
-            enclosing_sphere(&self.spheres)
+    /// Adds spheres from a bulk file: all with the look at this position, or each in its own colour.
+    pub fn add_spheres(&mut self, found: Spheres, look: Option<u32>) {
+        let Spheres { spheres, mut color_indices, colors } = found;
+        match look {
+            Some(look) => color_indices.fill(look),
+            None => {
+                // Positions of looks fit 32 bits, or there would be more of them than memory holds.
+                let first = u32::try_from(self.looks.len()).unwrap_or(u32::MAX);
+                self.looks.extend(colors.into_iter().map(Look::colored));
+                color_indices.iter_mut().for_each(|index| *index = index.saturating_add(first));
+            }
+        }
+        if self.spheres.is_empty() {
+            (self.spheres, self.sphere_looks) = (spheres, color_indices);
         } else {
-            let all: Vec<Sphere> = self.spheres.iter().copied().chain(corners).collect();
-            enclosing_sphere(&all)
-        };
-        enclosing.map(|enclosing| enclosing.sphere)
+            self.spheres.extend(spheres);
+            self.sphere_looks.extend(color_indices);
+        }
     }
 
-    /// Returns the view of a picture of this size; `None` if the camera has to fit a scene that no finite sphere
-    /// holds.
+    /// Adds a mesh from the file at `path`, with the look at this position.
+    pub fn add_mesh(&mut self, found: Mesh, look: u32, path: &Path) {
+        let Mesh { triangles, vertex_colors, flat } = found;
+        if flat > 0 {
+            let triangles = if flat == 1 { "triangle" } else { "triangles" };
+            self.warnings.push(format!("{}: left out {flat} {triangles} without area", path.display()));
+        }
+        self.triangle_looks.resize(self.triangle_looks.len() + triangles.len(), look);
+        if vertex_colors.iter().any(Option::is_some) || !self.vertex_colors.is_empty() {
+            self.vertex_colors.resize(self.triangles.len(), None);
+            self.vertex_colors.extend(vertex_colors);
+        }
+        self.triangles.extend(triangles);
+    }
+
+    /// Sets a stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
+    pub fn set_stage(&mut self) {
+        let (low, high) =
+            self.balls().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
+                (low.min(center - radius), high.max(center + radius))
+            });
+        let (center, size) = (low.midpoint(high), (high / 2.0 - low / 2.0).length());
+        self.background = DVec3::new(0.05, 0.06, 0.08);
+        self.camera = Camera::STAGE;
+        let lamp = |direction: [f64; 3], color: [f64; 3]| PointLight {
+            position: center + size * DVec3::from_array(direction),
+            color: DVec3::from_array(color),
+        };
+        self.lights =
+            vec![lamp([-4.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.22, 0.25, 0.32])];
+    }
+
+    /// The center and radius of each sphere, and each corner of each triangle with radius 0.
+    fn balls(&self) -> impl Iterator<Item = (DVec3, f64)> {
+        let corners = self.triangles.iter().flat_map(Triangle::vertices).map(|corner| (corner, 0.0));
+        self.spheres.iter().map(|sphere| (sphere.center(), sphere.radius())).chain(corners)
+    }
+
+    /// Returns the view of a picture of this size; `None` if the camera has to fit a scene and there is no place
+    /// in the f64 range from which it sees all of it.
     pub fn view(&self, size: Size) -> Option<View> {
         if !self.camera.fits() {
             return Some(View::new(self.camera, size));
         }
-        let camera = self.camera.framed(&self.content()?, size.width, size.height)?;
+        let camera = self.camera.framed(self.balls(), size.width, size.height)?;
         Some(View::new(camera, size))
     }
 }
@@ -91,6 +143,17 @@ pub struct Look {
     /// Phong's coefficients.
     pub material: Material,
 }
+
+impl Look {
+    /// The look of an object that has nothing but a colour.
+    pub fn colored(color: DVec3) -> Self {
+        Self { paint: Paint::Color(color), material: DEFAULT_MATERIAL }
+    }
+}
+
+/// What a material is unless it says otherwise; `docs/scene-format.md` states it.
+pub const DEFAULT_MATERIAL: Material =
+    Material { ambient: 0.1, diffuse: 0.8, specular: 0.3, shininess: 32.0 };
 
 /// Where a surface takes its colour from.
 #[derive(Debug)]

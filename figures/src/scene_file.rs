@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::Read;
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use rt_geom::{Sphere, Triangle};
@@ -20,7 +20,8 @@ use toml::Spanned;
 
 use crate::camera::Camera;
 use crate::figure::asset;
-use crate::scene::{Filter, Look, Paint, Scene};
+use crate::import::{obj, xyz};
+use crate::scene::{DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
 use crate::texture_file;
 
 /// The largest scene file that is read. More spheres than fit belong into a bulk file.
@@ -71,7 +72,11 @@ enum Problem {
     Camera(crate::camera::CameraError),
     #[error(transparent)]
     Texture(rt_io::ReadImageError),
-    #[error("no objects; add a [[sphere]] or a [[triangle]]")]
+    #[error(transparent)]
+    Spheres(xyz::XyzError),
+    #[error(transparent)]
+    Mesh(obj::ObjError),
+    #[error("no objects; add a [[sphere]], [[spheres]], [[triangle]] or [[mesh]]")]
     Empty,
     #[error("more than {} materials", u32::MAX)]
     TooManyLooks,
@@ -93,7 +98,11 @@ struct SceneTable {
     #[serde(default, deserialize_with = "tables")]
     sphere: Vec<SphereTable>,
     #[serde(default, deserialize_with = "tables")]
+    spheres: Vec<SpheresTable>,
+    #[serde(default, deserialize_with = "tables")]
     triangle: Vec<Spanned<TriangleTable>>,
+    #[serde(default, deserialize_with = "tables")]
+    mesh: Vec<MeshTable>,
 }
 
 #[derive(serde::Deserialize)]
@@ -137,12 +146,28 @@ struct SphereTable {
 
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
+struct SpheresTable {
+    file: Spanned<String>,
+    scale: Option<Number>,
+    radius: Option<Number>,
+    material: Option<Spanned<String>>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 struct TriangleTable {
     a: Vector,
     b: Vector,
     c: Vector,
     material: Option<Spanned<String>>,
     colors: Option<Spanned<Triple<Vector>>>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshTable {
+    file: Spanned<String>,
+    material: Option<Spanned<String>>,
 }
 
 type Number = Spanned<Real>;
@@ -227,10 +252,6 @@ fn tables<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Re
     deserializer.deserialize_any(Tables(PhantomData))
 }
 
-/// What a material is unless its table says otherwise; `docs/scene-format.md` states it.
-pub const DEFAULT_MATERIAL: Material =
-    Material { ambient: 0.1, diffuse: 0.8, specular: 0.3, shininess: 32.0 };
-
 /// Where the files that a scene names are looked up.
 #[derive(Clone, Copy, Debug)]
 enum Files<'a> {
@@ -307,12 +328,25 @@ impl Checker<'_> {
             scene.spheres.push(Sphere::new(center, radius).expect("center and radius were checked"));
             scene.sphere_looks.push(look);
         }
+        for spheres in &table.spheres {
+            self.spheres(spheres, &materials, &mut scene)?;
+        }
         let mut bare = None;
         for triangle in &table.triangle {
             self.triangle(triangle, &materials, &mut bare, &mut scene)?;
         }
         if scene.vertex_colors.iter().all(Option::is_none) {
             scene.vertex_colors.clear();
+        }
+        for mesh in &table.mesh {
+            let look = match &mesh.material {
+                Some(material) => self.paint(&scene, &materials, material)?,
+                None => self.bare(&mut scene, &mut bare, mesh.file.span())?,
+            };
+            let path = self.path(&mesh.file);
+            let found =
+                obj::load(&path).map_err(|error| self.refuse(mesh.file.span(), Problem::Mesh(error)))?;
+            scene.add_mesh(found, look, &path);
         }
         if scene.is_empty() {
             return Err(self.refuse(0..0, Problem::Empty));
@@ -365,24 +399,40 @@ impl Checker<'_> {
             ambient: coefficient("ambient", ambient, DEFAULT_MATERIAL.ambient)?,
             diffuse: coefficient("diffuse", diffuse, DEFAULT_MATERIAL.diffuse)?,
             specular: coefficient("specular", specular, DEFAULT_MATERIAL.specular)?,
-            shininess: coefficient("shininess", shininess, DEFAULT_MATERIAL.shininess)?,
+            shininess: shininess
+                .as_ref()
+                .map_or(Ok(DEFAULT_MATERIAL.shininess), |value| self.positive("shininess", value))?,
         };
-        if material.shininess == 0.0 {
-            let span = shininess.as_ref().map_or(table.span(), Spanned::span);
-            return Err(self.refuse(span, Problem::NotPositive { name: "shininess", found: 0.0 }));
-        }
         Ok(Look { paint, material })
     }
 
     fn texture(&self, file: &Spanned<String>) -> Result<Texture, SceneError> {
         let read = match self.files {
-            Files::Folder(folder) => texture_file::load(&folder.join(file.get_ref())),
+            Files::Folder(_) => texture_file::load(&self.path(file)),
             Files::Embedded => {
                 let name = file.get_ref();
                 texture_file::decode(asset(name).expect("a test loads every figure"), name)
             }
         };
         read.map_err(|error| self.refuse(file.span(), Problem::Texture(error)))
+    }
+
+    fn spheres(
+        &self,
+        table: &SpheresTable,
+        materials: &BTreeMap<&str, u32>,
+        scene: &mut Scene,
+    ) -> Result<(), SceneError> {
+        let SpheresTable { file, scale, radius, material } = table;
+        let look = material.as_ref().map(|material| self.material(materials, material)).transpose()?;
+        let options = xyz::Options {
+            scale: scale.as_ref().map_or(Ok(1.0), |scale| self.positive("scale", scale))?,
+            radius: radius.as_ref().map(|radius| self.not_negative("radius", radius)).transpose()?,
+            colored: look.is_none(),
+        };
+        let found = xyz::load(&self.path(file), options);
+        scene.add_spheres(found.map_err(|error| self.refuse(file.span(), Problem::Spheres(error)))?, look);
+        Ok(())
     }
 
     fn triangle(
@@ -398,21 +448,10 @@ impl Checker<'_> {
         if triangle.is_degenerate() {
             return Err(self.refuse(table.span(), Problem::FlatTriangle));
         }
-        let look = match (material, colors, *bare) {
-            (Some(material), ..) => {
-                let look = self.material(materials, material)?;
-                if matches!(scene.looks[look as usize].paint, Paint::Image { .. }) {
-                    let name = material.get_ref().clone();
-                    return Err(self.refuse(material.span(), Problem::TexturedTriangle(name)));
-                }
-                look
-            }
-            (None, Some(_), Some(bare)) => bare,
-            (None, Some(_), None) => {
-                let white = || Look { paint: Paint::Color(DVec3::ONE), material: DEFAULT_MATERIAL };
-                *bare.insert(self.push(&mut scene.looks, table.span(), |_| Ok(white()))?)
-            }
-            (None, None, _) => return Err(self.refuse(table.span(), Problem::BareTriangle)),
+        let look = match (material, colors) {
+            (Some(material), _) => self.paint(scene, materials, material)?,
+            (None, Some(_)) => self.bare(scene, bare, table.span())?,
+            (None, None) => return Err(self.refuse(table.span(), Problem::BareTriangle)),
         };
         let colors = colors.as_ref().map(|colors| {
             let Triple([a, b, c]) = colors.get_ref();
@@ -422,6 +461,36 @@ impl Checker<'_> {
         scene.triangle_looks.push(look);
         scene.vertex_colors.push(colors.transpose()?);
         Ok(())
+    }
+
+    /// The look that triangles without a material share.
+    fn bare(&self, scene: &mut Scene, bare: &mut Option<u32>, span: Range<usize>) -> Result<u32, SceneError> {
+        match *bare {
+            Some(look) => Ok(look),
+            None => Ok(*bare.insert(self.push(&mut scene.looks, span, |_| Ok(Look::colored(DVec3::ONE)))?)),
+        }
+    }
+
+    /// The look of a triangle: a material without a texture.
+    fn paint(
+        &self,
+        scene: &Scene,
+        materials: &BTreeMap<&str, u32>,
+        material: &Spanned<String>,
+    ) -> Result<u32, SceneError> {
+        let look = self.material(materials, material)?;
+        if matches!(scene.looks[look as usize].paint, Paint::Image { .. }) {
+            return Err(self.refuse(material.span(), Problem::TexturedTriangle(material.get_ref().clone())));
+        }
+        Ok(look)
+    }
+
+    /// Where a file is that the scene names.
+    fn path(&self, file: &Spanned<String>) -> PathBuf {
+        match self.files {
+            Files::Folder(folder) => folder.join(file.get_ref()),
+            Files::Embedded => file.get_ref().into(),
+        }
     }
 
     /// Adds a look to the list and returns its position.
@@ -456,6 +525,14 @@ impl Checker<'_> {
         }
         if found < 0.0 {
             return Err(self.refuse(value.span(), Problem::Negative { name, found }));
+        }
+        Ok(found)
+    }
+
+    fn positive(&self, name: &'static str, value: &Number) -> Result<f64, SceneError> {
+        let found = self.not_negative(name, value)?;
+        if found == 0.0 {
+            return Err(self.refuse(value.span(), Problem::NotPositive { name, found }));
         }
         Ok(found)
     }

@@ -1,0 +1,565 @@
+//! Spheres from XYZ files, plain and extended: molecules and particles by the million.
+//!
+//! A file is a line with the number of atoms, a line of comment, then a line for each atom. In a plain file that is
+//! `element x y z`, and whatever follows is passed over. In an extended one the comment has `Properties=name:type:columns`
+//! groups, joined by colons, that say what the columns are; of these `species`, `pos`, `radius` and `color` are read
+//! (`element`, `type` and capitals will do too). Only the first frame counts.
+//!
+//! The file streams through a buffer of a few megabytes. Each filling ends at a line's end, is cut into pieces at lines'
+//! ends, and the pieces are read in parallel; what they hold is appended in order. So memory is the spheres and the buffer,
+//! and the result does not depend on threads.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use rt_geom::Sphere;
+
+use super::{elements, shown};
+
+/// The size of the buffer, and so the longest line.
+const BUFFER: usize = 4 << 20;
+/// Fewer bytes than this are not worth a thread.
+const PIECE: usize = 64 << 10;
+
+/// Why a file of spheres cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum XyzError {
+    /// The file could not be opened or read.
+    #[error("cannot read {path}")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A line is not what it should be.
+    #[error("{path}:{line}: {problem}")]
+    Line {
+        /// The file.
+        path: String,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong there.
+        problem: Problem,
+    },
+}
+
+/// What is wrong with a line.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The first line is not a number of atoms.
+    #[error("expected the number of atoms, found {0:?}")]
+    Count(String),
+    /// The file ends before its last atom.
+    #[error("the file ends after {found} of {expected} atoms")]
+    Short {
+        /// The number in the first line.
+        expected: u64,
+        /// The number of lines that are there.
+        found: u64,
+    },
+    /// `Properties` in the comment cannot be understood.
+    #[error("Properties must be name:type:columns groups with pos:R:3 among them, found {0:?}")]
+    Properties(String),
+    /// A column is missing.
+    #[error("expected {expected} columns, found {found}")]
+    Columns {
+        /// At least this many.
+        expected: usize,
+        /// As many as there are.
+        found: usize,
+    },
+    /// Something else stands where a number should.
+    #[error("expected a number, found {0:?}")]
+    Number(String),
+    /// NaN, an infinity, or beyond the doubles once scaled.
+    #[error("{name} must be finite, found {found}")]
+    NotFinite {
+        /// The column.
+        name: &'static str,
+        /// As written.
+        found: String,
+    },
+    /// A radius below 0.
+    #[error("radius must not be negative, found {0}")]
+    Negative(f64),
+    /// A colour outside 0 to 1.
+    #[error("color must be from 0 to 1, found {0}")]
+    Color(f64),
+    /// Neither a symbol nor an atomic number.
+    #[error("unknown element {0:?}; expected a symbol such as C, or an atomic number")]
+    Element(String),
+    /// Nothing says how large the spheres are.
+    #[error("neither an element nor a radius column; give the spheres a radius")]
+    NoRadius,
+    /// A line that does not end.
+    #[error("a line is longer than {} MiB", BUFFER >> 20)]
+    LongLine,
+    /// More colours than can be numbered.
+    #[error("more than {} colors", u32::MAX)]
+    TooManyColors,
+}
+
+/// How a file's spheres are taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Positions and radii are multiplied by this; finite and more than 0.
+    pub scale: f64,
+    /// The radius of spheres without a radius column, in place of their elements' radii; before scaling.
+    pub radius: Option<f64>,
+    /// Whether colours are wanted; if not, all spheres have the same.
+    pub colored: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { scale: 1.0, radius: None, colored: true }
+    }
+}
+
+/// The spheres of a file, each with its colour.
+#[derive(Debug, Default)]
+pub struct Spheres {
+    /// The spheres, in the file's order.
+    pub spheres: Vec<Sphere>,
+    /// For each sphere, the position of its colour in `colors`.
+    pub color_indices: Vec<u32>,
+    /// The colours that occur, each once, in order of appearance.
+    pub colors: Vec<DVec3>,
+}
+
+/// Reads the file at `path`.
+///
+/// # Errors
+/// What is wrong, with the line.
+pub fn load(path: &Path, options: Options) -> Result<Spheres, XyzError> {
+    let name = path.display().to_string();
+    let error = |source| XyzError::Read { path: name.clone(), source };
+    let file = File::open(path).map_err(error)?;
+    let length = file.metadata().map_or(0, |metadata| metadata.len());
+    read(file, length, &name, options)
+}
+
+/// Reads spheres from `source`, which errors call `name` and which has about `length` bytes (0: unknown).
+///
+/// # Errors
+/// What is wrong, with the line.
+pub fn read(source: impl Read, length: u64, name: &str, options: Options) -> Result<Spheres, XyzError> {
+    let mut lines = Blocks { source, buffer: Vec::new(), start: 0, ended: false };
+    let mut line = 0;
+    let result = read_lines(&mut lines, length, options, &mut line);
+    result.map_err(|failure| match failure {
+        Failure::Read(source) => XyzError::Read { path: name.to_owned(), source },
+        Failure::Line(problem) => XyzError::Line { path: name.to_owned(), line, problem },
+    })
+}
+
+enum Failure {
+    Read(io::Error),
+    Line(Problem),
+}
+
+impl From<Problem> for Failure {
+    fn from(problem: Problem) -> Self {
+        Self::Line(problem)
+    }
+}
+
+/// Reads the file; on failure `line` is where.
+fn read_lines(
+    blocks: &mut Blocks<impl Read>,
+    length: u64,
+    options: Options,
+    line: &mut usize,
+) -> Result<Spheres, Failure> {
+    *line = 1;
+    let header = blocks.line()?;
+    let expected = text(header).parse::<u64>().map_err(|_| Problem::Count(shown(header)))?;
+    *line = 2;
+    let layout = Layout::of(&String::from_utf8_lossy(blocks.line()?), options)?;
+
+    let mut found = Spheres::default();
+    // An atom takes eight bytes at least, so a false count reserves no more than the file is worth.
+    let likely = usize::try_from(expected.min(length / 8)).unwrap_or(0);
+    found.spheres.reserve_exact(likely);
+    found.color_indices.reserve_exact(likely);
+    let mut palette = Palette::default();
+    *line = 3;
+    while (found.spheres.len() as u64) < expected {
+        let block = blocks.next()?;
+        if block.is_empty() {
+            return Err(Problem::Short { expected, found: found.spheres.len() as u64 }.into());
+        }
+        let missing = usize::try_from(expected - found.spheres.len() as u64).unwrap_or(usize::MAX);
+        for piece in pieces(block, missing).par_iter().map(|piece| layout.atoms(piece)).collect::<Vec<_>>() {
+            for (sphere, paint) in piece.atoms {
+                found.spheres.push(sphere);
+                found.color_indices.push(palette.index(paint, &mut found.colors)?);
+                *line += 1;
+            }
+            if let Some(problem) = piece.problem {
+                return Err(problem.into());
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Cuts a block of whole lines into pieces of whole lines, at most `lines` lines in all.
+fn pieces(block: &[u8], lines: usize) -> Vec<&[u8]> {
+    let size = (block.len() / rayon::current_num_threads()).max(PIECE);
+    let mut rest = block;
+    let mut pieces = Vec::new();
+    while !rest.is_empty() {
+        let end = match rest.get(size..).and_then(|later| later.iter().position(|&byte| byte == b'\n')) {
+            Some(position) => size + position + 1,
+            None => rest.len(),
+        };
+        let (piece, later) = rest.split_at(end);
+        pieces.push(piece);
+        rest = later;
+    }
+    // Lines behind the last atom are another frame or anything else, and not looked at.
+    let mut left = lines;
+    for piece in &mut pieces {
+        let count = piece.iter().filter(|&&byte| byte == b'\n').count();
+        if count > left {
+            let ends = piece.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+            *piece = &piece[..[0].into_iter().chain(ends).nth(left).expect("there are more lines than that")];
+        }
+        left -= count.min(left);
+    }
+    pieces
+}
+
+/// The source in blocks that end at a line's end.
+struct Blocks<R> {
+    source: R,
+    /// What was read; from `start` on it has not been given out yet.
+    buffer: Vec<u8>,
+    start: usize,
+    ended: bool,
+}
+
+impl<R: Read> Blocks<R> {
+    /// Fills the buffer up as far as the source goes.
+    fn fill(&mut self) -> Result<(), Failure> {
+        self.buffer.drain(..self.start);
+        self.start = 0;
+        let missing = BUFFER - self.buffer.len();
+        if !self.ended && missing > 0 {
+            let read = self.source.by_ref().take(missing as u64).read_to_end(&mut self.buffer);
+            self.ended = read.map_err(Failure::Read)? < missing;
+            if self.ended && self.buffer.last().is_some_and(|&last| last != b'\n') {
+                self.buffer.push(b'\n');
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives out whole lines, as many as the buffer holds; none at the end.
+    fn next(&mut self) -> Result<&[u8], Failure> {
+        if !self.buffer[self.start..].contains(&b'\n') {
+            self.fill()?;
+        }
+        let block = &self.buffer[self.start..];
+        match block.iter().rposition(|&byte| byte == b'\n') {
+            Some(last) => {
+                let from = self.start;
+                self.start += last + 1;
+                Ok(&self.buffer[from..self.start])
+            }
+            None if block.is_empty() => Ok(&[]),
+            None => Err(Problem::LongLine.into()),
+        }
+    }
+
+    /// Gives out one line, without its end; an empty one at the end.
+    fn line(&mut self) -> Result<&[u8], Failure> {
+        if !self.buffer[self.start..].contains(&b'\n') {
+            self.fill()?;
+        }
+        let from = self.start;
+        match self.buffer[from..].iter().position(|&byte| byte == b'\n') {
+            Some(length) => {
+                self.start = from + length + 1;
+                Ok(&self.buffer[from..from + length])
+            }
+            None if self.buffer.len() == from => Ok(&[]),
+            None => Err(Problem::LongLine.into()),
+        }
+    }
+}
+
+/// What decides an atom's colour.
+#[derive(Clone, Copy)]
+enum Paint {
+    Element(u8),
+    Color(DVec3),
+    Nothing,
+}
+
+/// The numbers that colours have got so far.
+#[derive(Default)]
+struct Palette {
+    elements: HashMap<u8, u32>,
+    colors: HashMap<[u64; 3], u32>,
+    /// The last colour and its number: neighbours in a file are often of one colour.
+    last: Option<([u64; 3], u32)>,
+}
+
+impl Palette {
+    fn index(&mut self, paint: Paint, colors: &mut Vec<DVec3>) -> Result<u32, Problem> {
+        let color = match paint {
+            Paint::Element(element) => match self.elements.get(&element) {
+                Some(&index) => return Ok(index),
+                None => elements::color(element),
+            },
+            Paint::Color(color) => color,
+            Paint::Nothing => DVec3::splat(0.8),
+        };
+        let bits = color.to_array().map(f64::to_bits);
+        if let Some((_, index)) = self.last.filter(|(last, _)| *last == bits) {
+            return Ok(index);
+        }
+        let next = u32::try_from(colors.len()).map_err(|_| Problem::TooManyColors)?;
+        let index = *self.colors.entry(bits).or_insert_with(|| {
+            colors.push(color);
+            next
+        });
+        if let Paint::Element(element) = paint {
+            self.elements.insert(element, index);
+        }
+        self.last = Some((bits, index));
+        Ok(index)
+    }
+}
+
+/// Which columns hold what.
+struct Layout {
+    options: Options,
+    position: usize,
+    element: Option<usize>,
+    radius: Option<usize>,
+    color: Option<usize>,
+    /// As many columns as have to be there.
+    columns: usize,
+}
+
+/// What was read from a piece of a file: atoms, and what is wrong with the line behind them, if anything.
+struct Piece {
+    atoms: Vec<(Sphere, Paint)>,
+    problem: Option<Problem>,
+}
+
+impl Layout {
+    /// Reads the comment line.
+    fn of(comment: &str, options: Options) -> Result<Self, Problem> {
+        let mut layout =
+            Self { options, position: 1, element: Some(0), radius: None, color: None, columns: 4 };
+        let Some(properties) = value(comment, "properties") else { return Ok(layout) };
+        let refuse = || Problem::Properties(shown(properties.as_bytes()));
+        let fields: Vec<&str> = properties.split(':').collect();
+        let mut position = None;
+        (layout.element, layout.columns) = (None, 0);
+        for group in fields.chunks(3) {
+            let &[name, kind, columns] = group else { return Err(refuse()) };
+            let columns: usize = columns.parse().ok().filter(|&n| 0 < n && n < 1000).ok_or_else(refuse)?;
+            let at = layout.columns;
+            layout.columns += columns;
+            let number = kind.eq_ignore_ascii_case("R") || kind.eq_ignore_ascii_case("I");
+            match (name.to_ascii_lowercase().as_str(), columns) {
+                ("pos" | "position", 3) if number => position = Some(at),
+                ("species" | "element" | "type", 1) => layout.element = Some(at),
+                ("radius", 1) if number => layout.radius = Some(at),
+                ("color", 3) if number && options.colored => layout.color = Some(at),
+                _ => {}
+            }
+        }
+        layout.position = position.ok_or_else(refuse)?;
+        let used = [Some(layout.position + 2), layout.element, layout.radius, layout.color.map(|at| at + 2)];
+        layout.columns = used.into_iter().flatten().max().map_or(0, |last| last + 1);
+        if layout.element.is_none() && layout.radius.is_none() && options.radius.is_none() {
+            return Err(Problem::NoRadius);
+        }
+        Ok(layout)
+    }
+
+    /// Reads whole lines.
+    fn atoms(&self, lines: &[u8]) -> Piece {
+        let mut atoms = Vec::with_capacity(lines.len() / 24);
+        let mut columns = Vec::with_capacity(self.columns);
+        for line in lines.split_inclusive(|&byte| byte == b'\n') {
+            match self.atom(line, &mut columns) {
+                Ok(atom) => atoms.push(atom),
+                Err(problem) => return Piece { atoms, problem: Some(problem) },
+            }
+        }
+        Piece { atoms, problem: None }
+    }
+
+    /// Reads a line; `columns` is a place to work in.
+    fn atom<'a>(&self, line: &'a [u8], columns: &mut Vec<&'a [u8]>) -> Result<(Sphere, Paint), Problem> {
+        columns.clear();
+        let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        columns.extend(words.take(self.columns));
+        if columns.len() < self.columns {
+            return Err(Problem::Columns { expected: self.columns, found: columns.len() });
+        }
+        let three = |at: usize| -> Result<DVec3, Problem> {
+            Ok(DVec3::new(number(columns[at])?, number(columns[at + 1])?, number(columns[at + 2])?))
+        };
+        let center = self.options.scale * three(self.position)?;
+        if !center.is_finite() {
+            let words = &columns[self.position..self.position + 3];
+            return Err(Problem::NotFinite { name: "position", found: shown(&words.join(&b' ')) });
+        }
+        let color = self.color.map(three).transpose()?;
+        if let Some(channel) =
+            color.and_then(|color| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c)))
+        {
+            return Err(Problem::Color(channel));
+        }
+        // An element has to be known only where something depends on it.
+        let needed = (self.options.colored && color.is_none())
+            || (self.radius.is_none() && self.options.radius.is_none());
+        let element = match self.element.filter(|_| needed) {
+            Some(at) => {
+                Some(elements::find(columns[at]).ok_or_else(|| Problem::Element(shown(columns[at])))?)
+            }
+            None => None,
+        };
+        let radius = match (self.radius, self.options.radius, element) {
+            (Some(at), ..) => number(columns[at])?,
+            (None, Some(radius), _) => radius,
+            (None, None, Some(element)) => elements::radius(element),
+            (None, None, None) => return Err(Problem::NoRadius),
+        };
+        if radius < 0.0 {
+            return Err(Problem::Negative(radius));
+        }
+        let sphere = Sphere::new(center, self.options.scale * radius)
+            .ok_or_else(|| Problem::NotFinite { name: "radius", found: radius.to_string() })?;
+        let paint = match (color, element) {
+            (Some(color), _) => Paint::Color(color),
+            (None, Some(element)) if self.options.colored => Paint::Element(element),
+            (None, _) => Paint::Nothing,
+        };
+        Ok((sphere, paint))
+    }
+}
+
+/// Returns the value of `key=value` or `key="value"` in a comment line, the key in any case.
+fn value<'a>(comment: &'a str, key: &str) -> Option<&'a str> {
+    let lower = comment.to_ascii_lowercase();
+    let starts = lower.match_indices(key).map(|(at, _)| at);
+    // A key stands at the start of a word, and its value follows at once.
+    let at = starts.into_iter().find(|&at| {
+        (at == 0 || lower.as_bytes()[at - 1].is_ascii_whitespace())
+            && lower[at + key.len()..].starts_with('=')
+    })?;
+    let value = &comment[at + key.len() + 1..];
+    match value.strip_prefix('"') {
+        Some(quoted) => quoted.split('"').next(),
+        None => value.split_whitespace().next().or(Some("")),
+    }
+}
+
+fn number(word: &[u8]) -> Result<f64, Problem> {
+    super::number(word).map_err(Problem::Number)
+}
+
+/// A line as text, for numbers; whatever is no UTF-8 is no number either.
+fn text(line: &[u8]) -> &str {
+    std::str::from_utf8(line).unwrap_or("").trim()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str, options: Options) -> Result<Spheres, XyzError> {
+        read(text.as_bytes(), text.len() as u64, "atoms.xyz", options)
+    }
+
+    fn sphere(x: f64, y: f64, z: f64, radius: f64) -> Sphere {
+        Sphere::new(DVec3::new(x, y, z), radius).unwrap()
+    }
+
+    #[test]
+    fn a_plain_file_has_the_elements_radii_and_colors() {
+        let text = "3\nwater, and what follows is passed over\nO 0 0 0 -0.8\nH 0.9 1e-1 0\n 1\t-0.9 .2 +0\r\nC 9 9 9\n";
+        let found = parse(text, Options::default()).unwrap();
+        let expected = [sphere(0.0, 0.0, 0.0, 1.5), sphere(0.9, 0.1, 0.0, 1.2), sphere(-0.9, 0.2, 0.0, 1.2)];
+        assert_eq!(found.spheres, expected);
+        assert_eq!(found.color_indices, [0, 1, 1]);
+        assert_eq!(found.colors, [DVec3::new(255.0, 13.0, 13.0) / 255.0, DVec3::ONE]);
+    }
+
+    #[test]
+    fn an_extended_file_has_its_own_columns() {
+        let comment =
+            "Lattice=\"1 0 0\" Properties=species:S:1:vel:R:2:pos:R:3:radius:R:1:color:R:3 pbc=\"T T T\"";
+        let text = format!("2\n{comment}\nXx 7 7 1 2 3 0.5 1 0.5 0\nC 8 8 4 5 6 0 1 0.5 0\n");
+        let found = parse(&text, Options { scale: 2.0, ..Options::default() }).unwrap();
+        assert_eq!(found.spheres, [sphere(2.0, 4.0, 6.0, 1.0), sphere(8.0, 10.0, 12.0, 0.0)]);
+        assert_eq!(found.colors, [DVec3::new(1.0, 0.5, 0.0)]);
+    }
+
+    #[test]
+    fn a_given_radius_takes_the_place_of_the_elements() {
+        let options = Options { radius: Some(0.25), colored: false, ..Options::default() };
+        let found = parse("1\n\nUnobtainium 1 2 3\n", options).unwrap();
+        assert_eq!(found.spheres, [sphere(1.0, 2.0, 3.0, 0.25)]);
+        let found = parse("1\nProperties=pos:R:3\n1 2 3\n", options).unwrap();
+        assert_eq!(found.spheres, [sphere(1.0, 2.0, 3.0, 0.25)]);
+    }
+
+    /// A source that gives out few bytes at a time, as a pipe may.
+    struct Trickle<'a>(&'a [u8]);
+
+    impl Read for Trickle<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let count = buffer.len().min(self.0.len()).min(1021);
+            buffer[..count].copy_from_slice(&self.0[..count]);
+            self.0 = &self.0[count..];
+            Ok(count)
+        }
+    }
+
+    #[test]
+    fn many_blocks_and_pieces_are_one_list() {
+        // About 9 MB: three fillings of the buffer, each in pieces. The last line has no end; a second frame follows it
+        // in the other text.
+        let count = 300_000;
+        let mut text = format!("{count}\nProperties=pos:R:3:radius:R:1\n");
+        for index in 0..count {
+            text += &format!("{index} {}.5 -0.125 0.0{index}\n", count - index);
+        }
+        let expected = |index: u32| {
+            let radius: f64 = format!("0.0{index}").parse().unwrap();
+            sphere(index.into(), f64::from(count - index) + 0.5, -0.125, radius)
+        };
+        for text in [text.trim_end().to_owned(), text.clone() + "1\n\nanother frame\n"] {
+            let found = read(Trickle(text.as_bytes()), 0, "atoms.xyz", Options::default()).unwrap();
+            assert_eq!(found.spheres.len(), count as usize);
+            assert!((0..count).zip(&found.spheres).all(|(index, sphere)| *sphere == expected(index)));
+        }
+    }
+
+    #[test]
+    fn an_error_far_into_a_file_names_its_line() {
+        let mut text = "200000\n\n".to_owned();
+        for index in 0..200_000 {
+            text += if index == 123_456 { "C 1 2 three\n" } else { "C 1 2 3 and so on, to make it long\n" };
+        }
+        let error = parse(&text, Options::default()).unwrap_err();
+        assert_eq!(error.to_string(), "atoms.xyz:123459: expected a number, found \"three\"");
+    }
+}
