@@ -5,15 +5,17 @@
 
 use std::error::Error;
 use std::io::{self, BufRead, IsTerminal, Read, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
-use crate::output::Format;
-use crate::{convert, draw};
+use crate::generate::Rule;
+use crate::output::{Format, Target};
+use crate::tile::Tile;
+use crate::{convert, draw, generate};
 
 /// The largest number of pixels in a picture: 1.5 GiB of samples.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -65,6 +67,25 @@ enum Command {
         #[arg(long)]
         quiet: bool,
     },
+    /// Join the tiles of a picture
+    Merge {
+        /// The picture to write, or `-` for stdout
+        output: PathBuf,
+        /// The tiles, in any order
+        #[arg(required = true)]
+        tiles: Vec<PathBuf>,
+        /// The format to write, if not by the ending of OUTPUT
+        #[arg(long)]
+        format: Option<Format>,
+    },
+    /// Write a scene made by a rule
+    Gen {
+        #[command(subcommand)]
+        piece: Piece,
+        /// Where to: .xyz, .toml or .obj, or `-` for stdout
+        #[arg(short, long, value_name = "FILE|-", default_value = "-", global = true)]
+        out: PathBuf,
+    },
     /// Count the sphere tests that the report's tree saves in a scene
     Tests {
         /// A figure's number or a scene file
@@ -72,6 +93,31 @@ enum Command {
         /// Columns and rows of the picture
         #[arg(long, value_name = "WxH", default_value = "1024x768")]
         size: PictureSize,
+    },
+}
+
+/// A scene that is made by a rule.
+#[derive(Subcommand)]
+enum Piece {
+    /// Spheres on spheres: (9^(depth + 1) - 1) / 8 of them, as XYZ or TOML
+    Sphereflake {
+        /// Generations after the first sphere
+        #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=7))]
+        depth: u32,
+    },
+    /// Random spheres in a cube, as XYZ or TOML
+    Spheres {
+        /// The rule for places and sizes
+        rule: Rule,
+        /// How many
+        #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+        count: u32,
+    },
+    /// A torus knot with colors at its vertices, as OBJ
+    Knot {
+        /// Rings along the tube, 64 triangles each
+        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(3..=1_000_000))]
+        segments: u32,
     },
 }
 
@@ -96,6 +142,9 @@ pub struct DrawOptions {
     /// Bits per sample
     #[arg(long, default_value = "8")]
     pub depth: Depth,
+    /// Draw only band I of N, rows (I-1)H/N to IH/N, for `merge`
+    #[arg(long, value_name = "I/N")]
+    pub tile: Option<Tile>,
     /// Write no progress and no notes
     #[arg(long)]
     pub quiet: bool,
@@ -240,7 +289,39 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Convert { input, output, format, depth, quiet }) => {
             convert::convert(&input, &output, format, depth.map(Depth::maxval), quiet)
         }
+        Some(Command::Merge { output, tiles, format }) => draw::merge(&output, &tiles, format),
+        Some(Command::Gen { piece, out }) => piece.write(&out),
         Some(Command::Tests { scene, size }) => draw::count_tests(&scene, size),
+    }
+}
+
+impl Piece {
+    fn write(&self, out: &Path) -> Result<(), Failure> {
+        let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
+        let (comment, balls) = match *self {
+            Self::Knot { segments } => {
+                if !matches!(ending.as_str(), "" | "obj") {
+                    return Err(Failure::Usage(format!(
+                        "a knot is a mesh: expected a file.obj, found .{ending}"
+                    )));
+                }
+                return Target::exactly(out).write_with(|out| generate::write_knot(segments, out));
+            }
+            Self::Sphereflake { depth } => {
+                (format!("sphereflake of depth {depth}"), generate::sphereflake(depth))
+            }
+            Self::Spheres { rule, count } => {
+                let name =
+                    rule.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
+                (format!("{count} spheres, {name}"), generate::random(rule, count))
+            }
+        };
+        let write = match ending.as_str() {
+            "" | "xyz" => generate::write_xyz,
+            "toml" => generate::write_toml,
+            _ => return Err(Failure::Usage(format!("expected a file.xyz or a file.toml, found .{ending}"))),
+        };
+        Target::exactly(out).write_with(|out| write(&balls, &comment, out))
     }
 }
 

@@ -27,8 +27,8 @@ pub fn convert(
         Some(maxval) => image.pixmap.scaled(maxval),
         None => image.pixmap,
     };
-    let target = if output == Path::new("-") { Target::Stdout } else { Target::File(output.to_owned()) };
-    target.write(&pixmap, target.format(format))?;
+    let target = Target::exactly(output);
+    target.write(&pixmap, None, target.format(format))?;
     if image.transparent && !quiet {
         // A warning that nobody can read is no reason to fail.
         let _ = writeln!(io::stderr(), "warning: {}: transparency was dropped", input.display());

@@ -1,7 +1,7 @@
 //! Draws scenes into files: loads, builds, traces, writes, and tells what that took.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -15,9 +15,10 @@ use serde::Serialize;
 use crate::camera::{Size, View};
 use crate::cli::{DrawOptions, Failure, PictureSize, to_stdout};
 use crate::figure::Figure;
-use crate::output::Target;
+use crate::output::{Format, Target};
 use crate::render::{self, AHEAD, Renderer};
 use crate::scene::Scene;
+use crate::tile::{self, Label};
 use crate::{import, scene_file};
 
 /// Work that ends sooner than this shows no progress.
@@ -28,7 +29,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 struct Account {
     picture: String,
     width: u32,
-    height: u32,
+    height: usize,
     samples: u32,
     spheres: usize,
     triangles: usize,
@@ -103,35 +104,58 @@ fn draw(
     let (spheres, triangles) = (scene.spheres.len(), scene.triangles.len());
     let PictureSize { width, height } = options.size;
     let view = view(&scene, options.size, options.samples)?;
+    let rows = options.tile.map_or(0..height, |tile| tile.rows(height));
+    let label = options.tile.map(|_| Label {
+        rows: rows.clone(),
+        width,
+        height,
+        samples: options.samples,
+        scene: scene.fingerprint(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    });
+    if rows.is_empty() {
+        // More tiles than rows: this one has nothing to do, and its absence leaves no gap.
+        if !options.quiet {
+            let _ = writeln!(io::stderr(), "{name}: this tile has no rows, nothing is written");
+        }
+        return Ok(());
+    }
     let loaded = Instant::now();
 
     let renderer = pool.install(|| Renderer::new(scene));
     let built = Instant::now();
 
     // Made before the work, so that a folder that cannot be made is told at once.
-    let target = Target::new(options.out.as_deref(), name, options.format, folder)?;
+    let name = options.tile.map_or_else(|| name.to_owned(), |tile| format!("{name}-{}", tile.suffix()));
+    let target = Target::new(options.out.as_deref(), &name, options.format, folder)?;
+    let format = target.format(options.format);
+    if label.is_some() && format == Format::Png {
+        return Err(Failure::Usage("a tile is a PPM; merge can write PNG".to_owned()));
+    }
     let maxval = options.depth.maxval();
-    let progress = Progress::new(height, options.quiet);
+    let progress = Progress::new(rows.len() as u64, options.quiet);
+    let band = rows.len();
     let render::Rows { samples, rays, hits } =
-        pool.install(|| renderer.rows(&view, 0..height, maxval, &|rows| progress.advance(rows)));
+        pool.install(|| renderer.rows(&view, rows, maxval, &|rows| progress.advance(rows)));
     progress.finish();
     let traced = Instant::now();
 
-    let pixmap = Pixmap::new(width as usize, height as usize, maxval, samples)
+    let pixmap = Pixmap::new(width as usize, band, maxval, samples)
         .expect("the renderer fills the picture with samples up to maxval");
-    target.write(&pixmap, target.format(options.format))?;
+    let label = label.map(|label| label.to_string());
+    target.write(&pixmap, label.as_deref(), format)?;
     let written = Instant::now();
 
     if !options.quiet && target != Target::Stdout {
         let seconds = (written - start).as_secs_f64();
         // A note that nobody can read is no reason to fail.
-        let _ = writeln!(io::stderr(), "{}: {width} x {height} in {seconds:.2} s", target.name());
+        let _ = writeln!(io::stderr(), "{}: {width} x {band} in {seconds:.2} s", target.name());
     }
     if options.json {
         let account = Account {
             picture: target.name(),
             width,
-            height,
+            height: band,
             samples: options.samples,
             spheres,
             triangles,
@@ -148,6 +172,16 @@ fn draw(
         to_stdout(format!("{}\n", serde_json::to_string(&account)?).as_bytes())?;
     }
     Ok(())
+}
+
+/// Joins tiles and writes the picture to `output`.
+///
+/// # Errors
+/// What is wrong with the tiles, or why the picture could not be written.
+pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<Format>) -> Result<(), Failure> {
+    let pixmap = tile::merge(tiles)?;
+    let target = Target::exactly(output);
+    target.write(&pixmap, None, target.format(format))
 }
 
 fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure> {
@@ -197,8 +231,8 @@ struct Progress {
 }
 
 impl Progress {
-    fn new(rows: u32, quiet: bool) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(u64::from(rows)), ProgressDrawTarget::hidden());
+    fn new(rows: u64, quiet: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{bar:40} {percent}% {eta} left").expect("a valid template");
         bar.set_style(style);
         Self { start: Instant::now(), bar, quiet, shown: Mutex::new(false) }

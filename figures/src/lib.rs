@@ -21,12 +21,14 @@ pub mod cli;
 pub mod convert;
 pub mod draw;
 pub mod figure;
+pub mod generate;
 pub mod import;
 pub mod output;
 pub mod render;
 pub mod scene;
 pub mod scene_file;
 mod texture_file;
+pub mod tile;
 
 // The example on the front page is compiled like any other.
 #[cfg(doctest)]

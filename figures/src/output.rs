@@ -40,11 +40,14 @@ impl Format {
         }
     }
 
-    fn write(self, pixmap: &Pixmap, mut out: &mut dyn Write) -> io::Result<()> {
-        match self {
-            Self::Ppm => ppm::write(pixmap, Encoding::Raw, &mut out),
-            Self::PpmPlain => ppm::write(pixmap, Encoding::Plain, &mut out),
-            Self::Png => png::write(pixmap, &mut out),
+    /// Writes the picture, with a comment line in a PPM.
+    fn write(self, pixmap: &Pixmap, comment: Option<&str>, out: &mut dyn Write) -> io::Result<()> {
+        match (self, comment) {
+            (Self::Ppm, None) => ppm::write(pixmap, Encoding::Raw, out),
+            (Self::Ppm, Some(comment)) => ppm::write_with_comment(pixmap, Encoding::Raw, comment, out),
+            (Self::PpmPlain, None) => ppm::write(pixmap, Encoding::Plain, out),
+            (Self::PpmPlain, Some(comment)) => ppm::write_with_comment(pixmap, Encoding::Plain, comment, out),
+            (Self::Png, _) => png::write(pixmap, out),
         }
     }
 }
@@ -86,6 +89,11 @@ impl Target {
         Ok(Self::File(out.join(format!("{name}.{}", format.unwrap_or(Format::Ppm).ending()))))
     }
 
+    /// The target that the user named: `-` is stdout, anything else a file.
+    pub fn exactly(out: &Path) -> Self {
+        if out == Path::new("-") { Self::Stdout } else { Self::File(out.to_owned()) }
+    }
+
     /// The format to write: the one asked for, else by the ending, else PPM.
     pub fn format(&self, asked: Option<Format>) -> Format {
         let by_ending = match self {
@@ -95,18 +103,26 @@ impl Target {
         asked.or(by_ending).unwrap_or(Format::Ppm)
     }
 
-    /// Writes the picture: a file appears whole or not at all.
+    /// Writes the picture, with a comment line in a PPM: a file appears whole or not at all.
     ///
     /// # Errors
     /// What the system says, with the path.
-    pub fn write(&self, pixmap: &Pixmap, format: Format) -> Result<(), Failure> {
+    pub fn write(&self, pixmap: &Pixmap, comment: Option<&str>, format: Format) -> Result<(), Failure> {
+        self.write_with(|out| format.write(pixmap, comment, out))
+    }
+
+    /// Writes whatever `write` does: a file appears whole or not at all.
+    ///
+    /// # Errors
+    /// What the system says, with the path.
+    pub fn write_with(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
         match self {
             Self::Stdout => {
                 let mut bytes = Vec::new();
-                format.write(pixmap, &mut bytes)?;
+                write(&mut bytes)?;
                 to_stdout(&bytes)
             }
-            Self::File(path) => Ok(save_atomically(path, |out| format.write(pixmap, out))?),
+            Self::File(path) => Ok(save_atomically(path, write)?),
         }
     }
 

@@ -118,6 +118,48 @@ impl Scene {
             vec![lamp([-4.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.22, 0.25, 0.32])];
     }
 
+    /// Returns a number that two different scenes hardly ever share: it tells tiles of one picture from another's.
+    pub fn fingerprint(&self) -> u64 {
+        let mut sum = Sum(0);
+        let Self { camera, background, lights, looks, spheres, sphere_looks, .. } = self;
+        let Self { triangles, triangle_looks, vertex_colors, .. } = self;
+        // Shortest decimals tell doubles apart; what there is a lot of goes by its bits.
+        sum.text(&format!("{camera:?} {background:?} {lights:?}"));
+        for Look { paint, material } in looks {
+            sum.text(&format!("{material:?}"));
+            match paint {
+                Paint::Color(color) => sum.vector(*color),
+                Paint::Image { texture, mirrored, filter } => {
+                    sum.text(&format!("{mirrored} {filter:?} {} {}", texture.width(), texture.height()));
+                    let middle = |texel: usize, count: usize| (texel as f64 + 0.5) / count as f64;
+                    for (row, column) in (0..texture.height())
+                        .flat_map(|row| (0..texture.width()).map(move |column| (row, column)))
+                    {
+                        let (u, v) = (middle(column, texture.width()), middle(row, texture.height()));
+                        sum.vector(texture.nearest(u, v));
+                    }
+                }
+            }
+        }
+        sum.word(spheres.len() as u64);
+        for (sphere, look) in spheres.iter().zip(sphere_looks) {
+            sum.vector(sphere.center());
+            sum.word(sphere.radius().to_bits());
+            sum.word(u64::from(*look));
+        }
+        for (triangle, look) in triangles.iter().zip(triangle_looks) {
+            triangle.vertices().into_iter().for_each(|vertex| sum.vector(vertex));
+            sum.word(u64::from(*look));
+        }
+        for (index, colors) in vertex_colors.iter().enumerate() {
+            if let Some(colors) = colors {
+                sum.word(index as u64);
+                colors.iter().for_each(|color| sum.vector(*color));
+            }
+        }
+        sum.0
+    }
+
     /// The center and radius of each sphere, and each corner of each triangle with radius 0.
     fn balls(&self) -> impl Iterator<Item = (DVec3, f64)> {
         let corners = self.triangles.iter().flat_map(Triangle::vertices).map(|corner| (corner, 0.0));
@@ -132,6 +174,23 @@ impl Scene {
         }
         let camera = self.camera.framed(self.balls(), size.width, size.height)?;
         Some(View::new(camera, size))
+    }
+}
+
+/// A running sum of 64 bits: each word is turned into it and stirred by a large odd number.
+struct Sum(u64);
+
+impl Sum {
+    fn word(&mut self, word: u64) {
+        self.0 = (self.0.rotate_left(23) ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+
+    fn vector(&mut self, vector: DVec3) {
+        vector.to_array().into_iter().for_each(|number| self.word(number.to_bits()));
+    }
+
+    fn text(&mut self, text: &str) {
+        text.bytes().for_each(|byte| self.word(u64::from(byte)));
     }
 }
 

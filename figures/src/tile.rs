@@ -1,0 +1,290 @@
+//! Bands of a picture, for job arrays: which rows a tile has, what its file says about itself, and how tiles are joined.
+//!
+//! Tile `i` of `n` has the rows from `⌊(i − 1) H / n⌋` up to `⌊i H / n⌋`. Its file is a PPM of these rows, with one comment
+//! line that tells where they belong. Joined, the rows are byte for byte those of the picture drawn in one go.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use rt_io::ppm::{self, PpmError};
+use rt_io::{Limits, Pixmap};
+
+/// One tile of several: `i/n`, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    number: u32,
+    of: u32,
+}
+
+impl FromStr for Tile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts =
+            text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
+            _ => Err("expected i/n with i from 1 to n, such as 3/16".to_owned()),
+        }
+    }
+}
+
+impl Tile {
+    /// The rows of this tile in a picture of `height` rows; none where there are more tiles than rows.
+    ///
+    /// ```
+    /// use figures::tile::Tile;
+    /// let tiles = ["1/3", "2/3", "3/3"].map(|text| text.parse::<Tile>().unwrap());
+    /// assert_eq!(tiles.map(|tile| tile.rows(10)), [0..3, 3..6, 6..10]);
+    /// ```
+    #[expect(clippy::cast_possible_truncation, reason = "at most `height`")]
+    pub fn rows(self, height: u32) -> Range<u32> {
+        let edge = |number: u32| (u64::from(number) * u64::from(height) / u64::from(self.of)) as u32;
+        edge(self.number - 1)..edge(self.number)
+    }
+
+    /// The tile in the name of a file.
+    pub fn suffix(self) -> String {
+        format!("{}-of-{}", self.number, self.of)
+    }
+}
+
+/// What a tile's file says about itself, in its comment line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The rows that it has.
+    pub rows: Range<u32>,
+    /// Columns of the whole picture.
+    pub width: u32,
+    /// Rows of the whole picture.
+    pub height: u32,
+    /// Samples along each side of a pixel.
+    pub samples: u32,
+    /// A fingerprint of the scene.
+    pub scene: u64,
+    /// The version of the program.
+    pub version: String,
+}
+
+impl fmt::Display for Label {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rows: Range { start, end }, width, height, samples, scene, version } = self;
+        write!(
+            f,
+            "figures {version} rows {start}..{end} of {width}x{height} samples {samples} scene {scene:016x}"
+        )
+    }
+}
+
+impl Label {
+    /// Reads what [`Display`](fmt::Display) has written.
+    fn parse(comment: &str) -> Option<Self> {
+        let words: Vec<&str> = comment.split_whitespace().collect();
+        let ["figures", version, "rows", rows, "of", size, "samples", samples, "scene", scene] = words[..]
+        else {
+            return None;
+        };
+        let (start, end) = rows.split_once("..")?;
+        let (width, height) = size.split_once('x')?;
+        let label = Self {
+            rows: start.parse().ok()?..end.parse().ok()?,
+            width: width.parse().ok()?,
+            height: height.parse().ok()?,
+            samples: samples.parse().ok()?,
+            scene: u64::from_str_radix(scene, 16).ok()?,
+            version: version.to_owned(),
+        };
+        (label.rows.start < label.rows.end && label.rows.end <= label.height).then_some(label)
+    }
+}
+
+/// A tile that was read.
+struct Part {
+    path: PathBuf,
+    label: Label,
+    pixmap: Pixmap,
+}
+
+impl Part {
+    /// What tiles of one picture have in common, each with its name.
+    fn common(&self) -> [(&'static str, String); 5] {
+        let Label { width, height, samples, scene, version, .. } = &self.label;
+        [
+            ("version", version.clone()),
+            ("size", format!("{width}x{height}")),
+            ("samples", samples.to_string()),
+            ("scene", format!("{scene:016x}")),
+            ("maxval", self.pixmap.maxval().to_string()),
+        ]
+    }
+}
+
+/// Why tiles cannot be joined.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    /// A file could not be opened.
+    #[error("cannot read {}", path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A file is not a PPM.
+    #[error("{}: {source}", path.display())]
+    Ppm {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: PpmError,
+    },
+    /// A file has no label, or its pixels are not what the label says.
+    #[error("{}: not a tile: {what}", path.display())]
+    NoTile {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        what: &'static str,
+    },
+    /// A tile of something else.
+    #[error("{}: a tile of another picture: {what} {found}, but {expected} in {}", path.display(), first.display())]
+    Stranger {
+        /// The file.
+        path: PathBuf,
+        /// The file that it is compared with.
+        first: PathBuf,
+        /// In what they differ.
+        what: &'static str,
+        /// As it is in this file.
+        found: String,
+        /// As it is in the first.
+        expected: String,
+    },
+    /// No files at all.
+    #[error("no tiles")]
+    Nothing,
+    /// Rows that no tile has.
+    #[error("rows {}..{} are missing", rows.start, rows.end)]
+    Gap {
+        /// The rows.
+        rows: Range<u32>,
+    },
+    /// Rows that two tiles have.
+    #[error("rows {}..{} are in {} and in {}", rows.start, rows.end, first.display(), second.display())]
+    Overlap {
+        /// The rows.
+        rows: Range<u32>,
+        /// One file that has them.
+        first: PathBuf,
+        /// The other one.
+        second: PathBuf,
+    },
+}
+
+/// Joins the tiles in these files, in any order, to the whole picture.
+///
+/// # Errors
+/// The first thing that is wrong: a file that is no tile, or a tile of another picture; then rows that are missing or
+/// there twice.
+pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
+    let mut parts = paths.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = parts.first() else { return Err(MergeError::Nothing) };
+    for part in &parts[1..] {
+        let mut pairs = part.common().into_iter().zip(first.common());
+        if let Some(((what, found), (_, expected))) =
+            pairs.find(|((_, found), (_, expected))| found != expected)
+        {
+            let (path, first) = (part.path.clone(), first.path.clone());
+            return Err(MergeError::Stranger { path, first, what, found, expected });
+        }
+    }
+    let (width, height, maxval) = (first.label.width, first.label.height, first.pixmap.maxval());
+    parts.sort_by_key(|part| part.label.rows.start);
+    for pair in parts.windows(2) {
+        let [first, second] = [&pair[0], &pair[1]];
+        let (end, start) = (first.label.rows.end, second.label.rows.start);
+        if start < end {
+            let (rows, first, second) =
+                (start..end.min(second.label.rows.end), first.path.clone(), second.path.clone());
+            return Err(MergeError::Overlap { rows, first, second });
+        }
+    }
+    let ends = [0].into_iter().chain(parts.iter().map(|part| part.label.rows.end));
+    let starts = parts.iter().map(|part| part.label.rows.start).chain([height]);
+    if let Some((end, start)) = ends.zip(starts).find(|(end, start)| end < start) {
+        return Err(MergeError::Gap { rows: end..start });
+    }
+    let mut samples = Vec::with_capacity(3 * width as usize * height as usize);
+    for part in parts {
+        samples.extend(part.pixmap.into_samples());
+    }
+    Ok(Pixmap::new(width as usize, height as usize, maxval, samples)
+        .expect("the rows were checked to be all there"))
+}
+
+/// Reads a tile.
+fn read(path: &Path) -> Result<Part, MergeError> {
+    let file = File::open(path).map_err(|source| MergeError::Open { path: path.to_owned(), source })?;
+    let read = ppm::read_with_comments(BufReader::new(file), &Limits::default());
+    let (pixmap, comments) = read.map_err(|source| MergeError::Ppm { path: path.to_owned(), source })?;
+    let refuse = |what| MergeError::NoTile { path: path.to_owned(), what };
+    let label = comments.iter().find_map(|comment| Label::parse(comment));
+    let label = label.ok_or_else(|| refuse("no comment says which rows it has"))?;
+    if pixmap.width() != label.width as usize || pixmap.height() != label.rows.len() {
+        return Err(refuse("its size is not what its comment says"));
+    }
+    Ok(Part { path: path.to_owned(), label, pixmap })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_row_once() {
+        for height in [1, 2, 7, 768, 1 << 20] {
+            for of in [1, 2, 3, 7, 16, 769] {
+                let mut next = 0;
+                for number in 1..=of {
+                    let rows = Tile { number, of }.rows(height);
+                    assert_eq!(rows.start, next, "tile {number}/{of} of {height} rows");
+                    next = rows.end;
+                }
+                assert_eq!(next, height, "{of} tiles of {height} rows");
+            }
+        }
+    }
+
+    #[test]
+    fn only_tiles_that_exist_are_named() {
+        for text in ["0/3", "4/3", "1/0", "3", "a/b", "1/", "/2", "-1/2", "1/2/3", "", "1/4294967296"] {
+            assert!(text.parse::<Tile>().is_err(), "{text}");
+        }
+        assert_eq!("16/16".parse(), Ok(Tile { number: 16, of: 16 }));
+    }
+
+    #[test]
+    fn a_label_reads_as_written() {
+        let label = Label {
+            rows: 3..7,
+            width: 10,
+            height: 9,
+            samples: 2,
+            scene: 0xBEEF,
+            version: "0.1.0".to_owned(),
+        };
+        assert_eq!(Label::parse(&label.to_string()), Some(label));
+        for text in [
+            "",
+            "figures 0.1.0 rows 7..3 of 10x9 samples 2 scene 0",
+            "figures 0.1.0 rows 3..99 of 10x9 samples 2 scene 0",
+        ] {
+            assert_eq!(Label::parse(text), None, "{text}");
+        }
+    }
+}
