@@ -66,6 +66,19 @@ impl Scene {
         self.len() == 0
     }
 
+    /// Checks that the lists agree with each other, as everything that reads a scene promises.
+    ///
+    /// # Panics
+    /// If they do not.
+    pub fn check(&self) {
+        assert_eq!(self.sphere_looks.len(), self.spheres.len());
+        assert_eq!(self.triangle_looks.len(), self.triangles.len());
+        assert!(self.vertex_colors.is_empty() || self.vertex_colors.len() == self.triangles.len());
+        let known = |look: &u32| (*look as usize) < self.looks.len();
+        assert!(self.sphere_looks.iter().all(known) && self.triangle_looks.iter().all(known));
+        assert!(!self.triangles.iter().any(Triangle::is_degenerate));
+    }
+
     /// Adds spheres from a bulk file: all with the look at this position, or each in its own colour.
     pub fn add_spheres(&mut self, found: Spheres, look: Option<u32>) {
         let Spheres { spheres, mut color_indices, colors } = found;

@@ -72,6 +72,8 @@ enum Problem {
     Camera(crate::camera::CameraError),
     #[error(transparent)]
     Texture(rt_io::ReadImageError),
+    #[error("{0} is not part of the program")]
+    NotEmbedded(String),
     #[error(transparent)]
     Spheres(xyz::XyzError),
     #[error(transparent)]
@@ -278,7 +280,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     parse(&text, &name, Files::Folder(path.parent().unwrap_or(Path::new(""))))
 }
 
-/// Reads a scene that is part of the program.
+/// Reads a scene that is part of the program; it may name no files but those that are part of it too.
 ///
 /// # Errors
 /// As [`load`].
@@ -343,7 +345,7 @@ impl Checker<'_> {
                 Some(material) => self.paint(&scene, &materials, material)?,
                 None => self.bare(&mut scene, &mut bare, mesh.file.span())?,
             };
-            let path = self.path(&mesh.file);
+            let path = self.path(&mesh.file)?;
             let found =
                 obj::load(&path).map_err(|error| self.refuse(mesh.file.span(), Problem::Mesh(error)))?;
             scene.add_mesh(found, look, &path);
@@ -407,12 +409,10 @@ impl Checker<'_> {
     }
 
     fn texture(&self, file: &Spanned<String>) -> Result<Texture, SceneError> {
-        let read = match self.files {
-            Files::Folder(_) => texture_file::load(&self.path(file)),
-            Files::Embedded => {
-                let name = file.get_ref();
-                texture_file::decode(asset(name).expect("a test loads every figure"), name)
-            }
+        let name = file.get_ref();
+        let read = match (self.files, asset(name)) {
+            (Files::Embedded, Some(bytes)) => texture_file::decode(bytes, name),
+            _ => texture_file::load(&self.path(file)?),
         };
         read.map_err(|error| self.refuse(file.span(), Problem::Texture(error)))
     }
@@ -430,7 +430,7 @@ impl Checker<'_> {
             radius: radius.as_ref().map(|radius| self.not_negative("radius", radius)).transpose()?,
             colored: look.is_none(),
         };
-        let found = xyz::load(&self.path(file), options);
+        let found = xyz::load(&self.path(file)?, options);
         scene.add_spheres(found.map_err(|error| self.refuse(file.span(), Problem::Spheres(error)))?, look);
         Ok(())
     }
@@ -486,10 +486,10 @@ impl Checker<'_> {
     }
 
     /// Where a file is that the scene names.
-    fn path(&self, file: &Spanned<String>) -> PathBuf {
+    fn path(&self, file: &Spanned<String>) -> Result<PathBuf, SceneError> {
         match self.files {
-            Files::Folder(folder) => folder.join(file.get_ref()),
-            Files::Embedded => file.get_ref().into(),
+            Files::Folder(folder) => Ok(folder.join(file.get_ref())),
+            Files::Embedded => Err(self.refuse(file.span(), Problem::NotEmbedded(file.get_ref().clone()))),
         }
     }
 

@@ -191,6 +191,7 @@ pub enum MergeError {
 /// # Errors
 /// The first thing that is wrong: a file that is no tile, or a tile of another picture; then rows that are missing or
 /// there twice.
+#[expect(clippy::missing_panics_doc, reason = "the rows are checked to be all there")]
 pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
     let mut parts = paths.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = parts.first() else { return Err(MergeError::Nothing) };

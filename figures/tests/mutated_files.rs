@@ -1,0 +1,97 @@
+//! Files with a few bytes changed are read or refused: nothing panics, and what is read keeps its promises.
+
+use figures::import::xyz::Options;
+use figures::import::{obj, xyz};
+use figures::scene_file;
+use proptest::prelude::*;
+
+const CASES: u32 = 10_000;
+
+const SCENES: [&str; 4] = [
+    include_str!("../scenes/figure-1.toml"),
+    include_str!("../scenes/figure-5.toml"),
+    include_str!("../../tests/fuzz/seeds/scene/phong.toml"),
+    include_str!("../../tests/fuzz/seeds/scene/texture.toml"),
+];
+const SPHERES: [&str; 2] = [
+    include_str!("../../tests/fuzz/seeds/xyz/plain.xyz"),
+    include_str!("../../tests/fuzz/seeds/xyz/extended.xyz"),
+];
+const MESHES: [&str; 1] = [include_str!("../../tests/fuzz/seeds/obj/square.obj")];
+
+/// One of the files with one to four changes: a byte replaced, taken out, or some text put in.
+fn mutated(files: &'static [&'static str]) -> impl Strategy<Value = Vec<u8>> {
+    let snippets = [
+        "nan",
+        "inf",
+        "-1",
+        "1e999",
+        "0",
+        "99999999999999999999",
+        "\n",
+        "[",
+        "\"",
+        "=",
+        " ",
+        "#",
+        "é",
+        ".",
+        "/",
+    ];
+    let change = (any::<prop::sample::Index>(), 0..3, any::<u8>(), prop::sample::select(snippets.to_vec()));
+    (prop::sample::select(files.to_vec()), prop::collection::vec(change, 1..=4)).prop_map(
+        |(file, changes)| {
+            let mut bytes = file.as_bytes().to_vec();
+            for (index, kind, byte, snippet) in changes {
+                if bytes.is_empty() {
+                    break;
+                }
+                let at = index.index(bytes.len());
+                match kind {
+                    0 => bytes[at] = byte,
+                    1 => drop(bytes.remove(at)),
+                    _ => drop(bytes.splice(at..at, snippet.bytes())),
+                }
+            }
+            bytes
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(CASES))]
+
+    #[test]
+    fn a_mutated_scene_is_read_or_refused(bytes in mutated(&SCENES)) {
+        let text = String::from_utf8_lossy(&bytes);
+        match scene_file::embedded(&text, "scene.toml") {
+            Ok(scene) => scene.check(),
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(message.starts_with("scene.toml:") && !message.contains('\n'), "{message}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_mutated_file_of_spheres_is_read_or_refused(bytes in mutated(&SPHERES)) {
+        match xyz::read(&bytes[..], bytes.len() as u64, "atoms.xyz", Options::default()) {
+            Ok(found) => {
+                prop_assert_eq!(found.spheres.len(), found.color_indices.len());
+                prop_assert!(found.color_indices.iter().all(|&index| (index as usize) < found.colors.len()));
+            }
+            Err(error) => prop_assert!(error.to_string().starts_with("atoms.xyz:"), "{error}"),
+        }
+    }
+
+    #[test]
+    fn a_mutated_mesh_is_read_or_refused(bytes in mutated(&MESHES)) {
+        match obj::read(&bytes[..], "mesh.obj") {
+            Ok(mesh) => {
+                prop_assert_eq!(mesh.triangles.len(), mesh.vertex_colors.len());
+                prop_assert!(mesh.triangles.iter().all(|triangle| !triangle.is_degenerate()));
+            }
+            Err(error) => prop_assert!(error.to_string().starts_with("mesh.obj:"), "{error}"),
+        }
+    }
+}
