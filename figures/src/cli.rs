@@ -15,7 +15,7 @@ use crate::figure::{FIGURES, Figure};
 use crate::generate::Rule;
 use crate::output::{Format, Target};
 use crate::tile::Tile;
-use crate::{convert, draw, generate};
+use crate::{convert, draw, generate, report};
 
 /// The largest number of pixels in a picture: 1.5 GiB of samples.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -94,6 +94,8 @@ enum Command {
         #[arg(long, value_name = "WxH", default_value = "1024x768")]
         size: PictureSize,
     },
+    /// Measure the speed and the error of every kernel beside the textbook's methods
+    Report(report::Options),
 }
 
 /// A scene that is made by a rule.
@@ -292,6 +294,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Merge { output, tiles, format }) => draw::merge(&output, &tiles, format),
         Some(Command::Gen { piece, out }) => piece.write(&out),
         Some(Command::Tests { scene, size }) => draw::count_tests(&scene, size),
+        Some(Command::Report(options)) => report::run(&options),
     }
 }
 

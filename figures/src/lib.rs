@@ -25,6 +25,7 @@ pub mod generate;
 pub mod import;
 pub mod output;
 pub mod render;
+mod report;
 pub mod scene;
 pub mod scene_file;
 mod texture_file;

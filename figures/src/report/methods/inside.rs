@@ -1,0 +1,59 @@
+//! Whether a point, projected orthogonally, lies in a triangle. A case is the point and three vertices; the verdict is 1
+//! inside, boundary included; there is no value.
+
+use rt_geom::{Inside, Triangle, inside_triangle};
+
+use super::real::{Real, Vector, cross, dot, dvec3, sub, vector};
+use super::{Answer, Method};
+
+/// Returns the methods that tell whether a point is in a triangle.
+pub(in super::super) fn inside() -> Vec<Method<12, 0>> {
+    let verdict = |inside| Answer::without_values(u8::from(inside));
+    let parts = |case: &[f64; 12]| (vector(case, 0), [3, 6, 9].map(|from| vector(case, from)));
+    vec![
+        Method::new("orientations f32", "the original report: three orientations", move |case| {
+            verdict(orientations::<f32>(vector(case, 0), [3, 6, 9].map(|from| vector(case, from))))
+        })
+        .verdict_alone(),
+        Method::new("orientations", "the original report: three orientations", move |case| {
+            let (point, vertices) = parts(case);
+            verdict(orientations(point, vertices))
+        })
+        .verdict_alone(),
+        Method::new("barycentric", "Ericson, Real-Time Collision Detection, section 3.4", move |case| {
+            let (point, vertices) = parts(case);
+            verdict(barycentric(point, vertices))
+        })
+        .verdict_alone(),
+        Method::ours("ours", move |case| {
+            let [a, b, c] = [3, 6, 9].map(|from| dvec3(case, from));
+            let triangle = Triangle::new(a, b, c).expect("cases are valid triangles");
+            verdict(inside_triangle(dvec3(case, 0), &triangle) != Inside::Outside)
+        })
+        .verdict_alone(),
+    ]
+}
+
+/// No turn of the three edges around the point is against the triangle's own.
+pub(super) fn orientations<T: Real>(point: Vector<T>, [a, b, c]: [Vector<T>; 3]) -> bool {
+    let normal = cross(sub(b, a), sub(c, a));
+    let turn = |from, to| dot(normal, cross(sub(to, from), sub(point, from)));
+    let zero = T::of(0.0);
+    dot(normal, normal) > zero && turn(a, b) >= zero && turn(b, c) >= zero && turn(c, a) >= zero
+}
+
+fn barycentric(point: Vector<f64>, [a, b, c]: [Vector<f64>; 3]) -> bool {
+    let (e, f, p) = (sub(b, a), sub(c, a), sub(point, a));
+    let (ee, ef, ff, pe, pf) = (dot(e, e), dot(e, f), dot(f, f), dot(p, e), dot(p, f));
+    let determinant = ee * ff - ef * ef;
+    let v = (ff * pe - ef * pf) / determinant;
+    let w = (ee * pf - ef * pe) / determinant;
+    v >= 0.0 && w >= 0.0 && v + w <= 1.0
+}
+
+/// The plane's `(a, b, c)` in `ax + by + cz = 1`, by Cramer's rule.
+pub(super) fn plain_plane([p, q, r]: [Vector<f64>; 3]) -> Vector<f64> {
+    let normal = cross(sub(q, p), sub(r, p));
+    let offset = dot(normal, p);
+    normal.map(|x| x / offset)
+}

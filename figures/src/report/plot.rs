@@ -1,0 +1,242 @@
+//! Work-precision diagrams as SVG: error across, time up, one point a method.
+//!
+//! An error of zero has its own column at the left, NaN one at the right, and the scale between them is logarithmic.
+//! Methods that no other beats in time, error and wrong verdicts at once are filled and joined; the rest is hollow. A
+//! triangle marks wrong verdicts. Blue and orange are Okabe and Ito's, told apart by all; colours follow the reader's
+//! light or dark setting.
+
+use std::fmt::Write;
+
+use super::measure::{Kernel, Measured, NAN_DISTANCE};
+
+const WIDTH: f64 = 800.0;
+const HEIGHT: f64 = 440.0;
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 24.0;
+const TOP: f64 = 44.0;
+const BOTTOM: f64 = 66.0;
+/// Width of the columns for zero and for NaN.
+const COLUMN: f64 = 60.0;
+
+/// A method's place in a diagram.
+struct Point<'a> {
+    method: &'a Measured,
+    x: f64,
+    y: f64,
+    wrong: f64,
+    error: f64,
+    dominated: bool,
+}
+
+/// Returns the diagram of a kernel. Without values the error is the share of wrong verdicts.
+pub(super) fn work_precision(kernel: &Kernel) -> String {
+    let by_share = kernel.values.is_none();
+    let (decades, label) = if by_share {
+        ((0, 6), "wrong verdicts, per million")
+    } else {
+        ((0, 19), "largest error of all classes, in units of the last place")
+    };
+    let mut points: Vec<Point> = kernel
+        .methods
+        .iter()
+        .map(|method| {
+            let total = method.total();
+            let wrong = total.wrong_verdicts as f64 / total.cases as f64;
+            let error = if by_share { 1e6 * wrong } else { total.max_ulp };
+            Point { method, x: across(error, decades), y: 0.0, wrong, error, dominated: false }
+        })
+        .collect();
+    let times = points.iter().map(|point| point.method.time());
+    let (low, high) = times.fold((f64::MAX, 0.0f64), |(low, high), t| (low.min(t), high.max(t)));
+    let (low, high) = (low.log10() - 0.15, high.log10() + 0.2);
+    for i in 0..points.len() {
+        let time = points[i].method.time();
+        points[i].y = TOP + (HEIGHT - TOP - BOTTOM) * (high - time.log10()) / (high - low);
+        let key = |point: &Point| [point.method.time(), point.error, point.wrong];
+        let mine = key(&points[i]);
+        points[i].dominated = points.iter().any(|other| {
+            let other = key(other);
+            other.iter().zip(mine).all(|(o, m)| *o <= m) && other != mine
+        });
+    }
+
+    let mut svg = String::new();
+    frame(&mut svg, kernel, decades, label, (low, high));
+    join_front(&mut svg, &points);
+    marks(&mut svg, &points);
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// Returns where an error is drawn.
+fn across(error: f64, (first, last): (i32, i32)) -> f64 {
+    let (start, end) = (LEFT + COLUMN, WIDTH - RIGHT - COLUMN);
+    if error == 0.0 {
+        LEFT + COLUMN / 2.0
+    } else if error >= NAN_DISTANCE {
+        WIDTH - RIGHT - COLUMN / 2.0
+    } else {
+        let part = (error.max(1.0).log10() - f64::from(first)) / f64::from(last - first);
+        start + 8.0 + (end - start - 16.0) * part
+    }
+}
+
+fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (low, high): (f64, f64)) {
+    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
+    // Writing to a string cannot fail.
+    let _ = write!(
+        svg,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img">
+<title>{title}: time against error</title>
+<style>
+svg {{ --ink: #1b1b1b; --paper: #ffffff; --grid: #d9d9d9; --ours: #0072b2; --other: #d55e00; background: var(--paper); font: 13px sans-serif; }}
+@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e8e8e8; --paper: #16181c; --grid: #3a3d42; --ours: #56b4e9; --other: #e69f00; }} }}
+text {{ fill: var(--ink); }}
+.grid {{ stroke: var(--grid); stroke-width: 1; }}
+.axis {{ stroke: var(--ink); stroke-width: 1; fill: none; }}
+.front {{ stroke: var(--ink); stroke-width: 1.5; stroke-dasharray: 5 4; fill: none; opacity: 0.6; }}
+.ours {{ stroke: var(--ours); fill: var(--ours); }}
+.other {{ stroke: var(--other); fill: var(--other); }}
+.mark {{ stroke-width: 2; }}
+.hollow {{ fill: var(--paper); }}
+.name {{ stroke: none; }}
+</style>
+<rect width="{WIDTH}" height="{HEIGHT}" fill="var(--paper)"/>
+<text x="{LEFT}" y="24" font-size="16" font-weight="bold">{title}</text>
+"#,
+        title = escape(&kernel.name),
+    );
+    let (first, last) = decades;
+    for decade in (first..=last).step_by(if last > 9 { 3 } else { 1 }) {
+        let x = across(10f64.powi(decade), decades);
+        let text =
+            if decade < 4 { format!("{}", 10i32.pow(decade.unsigned_abs())) } else { format!("1e{decade}") };
+        let _ = writeln!(svg, r#"<line class="grid" x1="{x:.1}" y1="{TOP}" x2="{x:.1}" y2="{bottom}"/>"#);
+        let _ =
+            writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
+    }
+    for (text, x) in [("0", across(0.0, decades)), ("NaN", across(NAN_DISTANCE, decades))] {
+        if text == "0" || last > 9 {
+            let _ = writeln!(
+                svg,
+                r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#,
+                bottom + 18.0
+            );
+        }
+    }
+    let mut ticks: Vec<f64> = Vec::new();
+    for decade in -1..8 {
+        ticks.extend([1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
+    }
+    for tick in ticks.into_iter().filter(|tick| (low..high).contains(&tick.log10())) {
+        let y = TOP + (bottom - TOP) * (high - tick.log10()) / (high - low);
+        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{right}" y2="{y:.1}"/>"#);
+        let _ = writeln!(
+            svg,
+            r#"<text x="{:.1}" y="{:.1}" text-anchor="end">{tick}</text>"#,
+            LEFT - 8.0,
+            y + 4.0
+        );
+    }
+    let zero = LEFT + COLUMN;
+    let _ = writeln!(svg, r#"<line class="axis" x1="{zero}" y1="{TOP}" x2="{zero}" y2="{bottom}"/>"#);
+    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {TOP} V {bottom} H {right}"/>"#);
+    let middle = (LEFT + right) / 2.0;
+    let _ = writeln!(svg, r#"<text x="{middle}" y="{}" text-anchor="middle">{label}</text>"#, HEIGHT - 26.0);
+    let _ = writeln!(
+        svg,
+        r#"<text transform="translate(18 {}) rotate(-90)" text-anchor="middle">nanoseconds an operation (ordinary cases)</text>"#,
+        (TOP + bottom) / 2.0
+    );
+    let _ = writeln!(
+        svg,
+        r#"<text x="{middle}" y="{}" text-anchor="middle" font-size="12">blue: this project · orange: others · filled: beaten by none · hollow: beaten · triangle: wrong verdicts</text>"#,
+        HEIGHT - 8.0
+    );
+}
+
+/// Joins the points that no other beats, as steps.
+fn join_front(svg: &mut String, points: &[Point]) {
+    let mut front: Vec<&Point> = points.iter().filter(|point| !point.dominated).collect();
+    front.sort_by(|a, b| a.x.total_cmp(&b.x).then(b.y.total_cmp(&a.y)));
+    let mut path = String::new();
+    for point in front {
+        let command = if path.is_empty() { 'M' } else { 'L' };
+        let _ = write!(path, "{command} {:.1} {:.1} ", point.x, point.y);
+    }
+    let _ = writeln!(svg, r#"<path class="front" d="{path}"/>"#);
+}
+
+fn marks(svg: &mut String, points: &[Point]) {
+    let mut order: Vec<&Point> = points.iter().collect();
+    order.sort_by(|a, b| a.y.total_cmp(&b.y));
+    let mut labels: Vec<(f64, f64)> = Vec::new();
+    for point in order {
+        let Point { x, y, .. } = *point;
+        let class = format!(
+            "mark {}{}",
+            if point.method.ours { "ours" } else { "other" },
+            if point.dominated { " hollow" } else { "" }
+        );
+        let shape = if point.wrong > 0.0 {
+            format!("M {x:.1} {:.1} l 7 12 h -14 z", y - 7.0)
+        } else {
+            format!("M {:.1} {y:.1} a 6 6 0 1 0 12 0 a 6 6 0 1 0 -12 0 z", x - 6.0)
+        };
+        let _ = writeln!(svg, r#"<path class="{class}" d="{shape}"/>"#);
+        // A label goes beside its mark, and below a label that is already there.
+        let to_left = x > 0.62 * WIDTH;
+        let mut label_y = y + 4.0;
+        while labels.iter().any(|&(lx, ly)| (lx - x).abs() < 230.0 && (ly - label_y).abs() < 15.0) {
+            label_y += 3.0;
+        }
+        labels.push((x, label_y));
+        let text = if point.wrong > 0.0 {
+            format!("{} ({} wrong)", point.method.name, percent(point.wrong))
+        } else {
+            point.method.name.clone()
+        };
+        let (anchor, label_x) = if to_left { ("end", x - 11.0) } else { ("start", x + 11.0) };
+        let _ = writeln!(
+            svg,
+            r#"<text class="name" x="{label_x:.1}" y="{label_y:.1}" text-anchor="{anchor}">{}</text>"#,
+            escape(&text)
+        );
+    }
+}
+
+/// Returns a share in percent, with at least one digit that is not zero.
+pub(super) fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent >= 9.95 {
+        format!("{percent:.0} %")
+    } else if percent >= 0.095 {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.2} %")
+    }
+}
+
+/// Returns the text with what XML would take for markup replaced.
+pub(super) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_and_nan_have_columns_of_their_own() {
+        let decades = (0, 19);
+        let places = [0.0, 1.0, 1e3, 1e18, NAN_DISTANCE].map(|error| across(error, decades));
+        assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
+        assert!(places[0] < LEFT + COLUMN && places[1] > LEFT + COLUMN);
+        assert!(places[3] < WIDTH - RIGHT - COLUMN && places[4] > WIDTH - RIGHT - COLUMN);
+    }
+
+    #[test]
+    fn names_cannot_break_the_markup() {
+        assert_eq!(escape(r#"a < b & "c""#), "a &lt; b &amp; &quot;c&quot;");
+    }
+}
