@@ -346,6 +346,60 @@ mod tests {
         assert!(integers > 10_000, "{integers}");
     }
 
+    /// A midpoint of two doubles, an odd integer of 54 bits, and its inverse modulo 2^64.
+    fn midpoint_and_inverse(rng: &mut Rng) -> (u64, u64) {
+        let midpoint = (1 << 53) | (rng.bits() >> 11) | 1;
+        let mut inverse = midpoint;
+        for _ in 0..6 {
+            inverse = inverse.wrapping_mul(2_u64.wrapping_sub(midpoint.wrapping_mul(inverse)));
+        }
+        assert_eq!(midpoint.wrapping_mul(inverse), 1);
+        (midpoint, inverse)
+    }
+
+    #[test]
+    #[expect(clippy::cast_precision_loss, reason = "53 bits by construction")]
+    fn nearly_double_roots_next_to_a_midpoint_are_correct() {
+        // (x - M) (x - r) plus a small t: roots near M and r, near each other, and M r + t such that it has 53 bits
+        let mut found = 0;
+        check_class(38, |rng| {
+            let (midpoint, inverse) = midpoint_and_inverse(rng);
+            let sign = if rng.below(2) == 0 { 1 } else { u64::MAX };
+            let fits = |t: &u64| {
+                let r = t.wrapping_mul(sign).wrapping_mul(inverse) % (1 << 55);
+                let near = r.abs_diff(midpoint) < midpoint >> 7 && r.abs_diff(midpoint) > midpoint >> 10;
+                near && (midpoint + r).is_multiple_of(4)
+            };
+            let Some(t) = (1..1 << 14).step_by(2).find(fits) else { return [1.0, 0.0, 0.0] };
+            let r = t.wrapping_mul(sign).wrapping_mul(inverse) % (1 << 55);
+            let product = u128::from(midpoint) * u128::from(r);
+            let c = if sign == 1 { product - u128::from(t) } else { product + u128::from(t) };
+            assert!(c.is_multiple_of(1 << 55));
+            found += 1;
+            [1.0, -((midpoint + r) as f64), c as f64]
+        });
+        assert!(found > 5_000, "{found}");
+    }
+
+    #[test]
+    #[expect(clippy::cast_precision_loss, reason = "53 bits by construction")]
+    fn a_tiny_root_next_to_a_midpoint_is_decided_by_integers() {
+        // M b - t is c 2^54: -c / b is next to a midpoint, and so is the smaller root, if the other is far larger
+        let [.., integers] = check_class(39, |rng| {
+            let (midpoint, inverse) = midpoint_and_inverse(rng);
+            let fits = |t: &u64| t.wrapping_mul(inverse) % (1 << 54) < 1 << 53;
+            let t = (1..).step_by(2).find(fits).expect("one in two does");
+            let b = t.wrapping_mul(inverse) % (1 << 54);
+            let c = (u128::from(midpoint) * u128::from(b) - u128::from(t)) >> 54;
+            let [i, j, k] =
+                [[11, -116, -64], [970, -1074, -1074], [960, -500, 0], [100, 0, -200]][rng.below(4)];
+            let scale = |x: f64, k: i32| x * 2f64.powi(k / 2) * 2f64.powi(k - k / 2);
+            let sign = if rng.below(2) == 0 { 1.0 } else { -1.0 };
+            [scale(1.0 + f64::EPSILON, k), scale(b as f64, i), scale(sign * c as f64, j)]
+        });
+        assert!(integers > 10_000, "{integers}");
+    }
+
     #[test]
     fn roots_around_the_overflow_threshold_round_as_they_should() {
         let mut seen = [0; 2];
