@@ -1,115 +1,287 @@
-//! The minimal sphere of at most five spheres, by trying subsets.
+//! The minimal sphere of at most five spheres, given that of four of them.
+//!
+//! A sphere of radius R touches sphere i from inside if `|x - c_i| = R - r_i`. With the origin at the center of the
+//! largest sphere, `p_i = c_i - c_0`, `s_i = r_i - r_0 <= 0` and `rho = R - r_0`, the difference of the squares of the
+//! equations i and 0 is linear, `p_i . x = h_i + s_i rho` with `h_i = (|p_i|² - s_i²) / 2`. The center lies in
+//! the plane, line or point that the centers span, so the dual basis `k_i` of the `p_i` gives
+//! `x = sum k_i (h_i + s_i rho) = a + rho q`, and `|x| = rho` is a quadratic equation for `rho`. The same `k_i` give the
+//! barycentric coordinates of x; the sphere is the minimal one of its spheres if none of them is negative.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
+use super::real::{Real, cross, dot};
 use crate::Sphere;
 
-/// At most four spheres and the minimal sphere that they touch from inside.
-#[derive(Clone, Debug)]
-pub(super) struct Basis {
-    indices: [usize; 4],
+/// The sphere that one to four spheres touch from inside, with its center in the flat that their centers span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tangent<T> {
+    /// The spheres' places in the set, the largest sphere first. Those beyond `len` mean nothing.
+    index: [usize; 4],
     len: usize,
-    center: DVec3,
-    radius: f64,
+    /// The center less that of the first sphere.
+    pub(super) x: [T; 3],
+    /// The radius less that of the first sphere.
+    pub(super) rho: T,
+    /// Barycentric coordinates of the center in terms of the spheres' centers: their sum is 1.
+    pub(super) weight: [T; 4],
+    /// The dual basis of the centers less the first one.
+    pub(super) dual: [[T; 3]; 3],
+    /// The derivative of `x` by `rho`, as far as the linear equations say.
+    pub(super) q: [T; 3],
 }
 
-impl Basis {
-    /// The basis of one sphere: itself.
-    pub(super) fn single(index: usize, sphere: &Sphere) -> Self {
-        Self { indices: [index; 4], len: 1, center: sphere.center(), radius: sphere.radius() }
+/// The difference of the centers of two spheres.
+#[inline(always)]
+pub(super) fn offset<T: Real>(to: DVec3, from: DVec3) -> [T; 3] {
+    [T::difference(to.x, from.x), T::difference(to.y, from.y), T::difference(to.z, from.z)]
+}
+
+impl<T: Real> Tangent<T> {
+    /// One sphere is its own minimal sphere.
+    #[inline(always)]
+    pub(super) fn single(index: usize) -> Self {
+        let zero = [T::ZERO; 3];
+        Self {
+            index: [index; 4],
+            len: 1,
+            x: zero,
+            rho: T::ZERO,
+            weight: [T::ONE, T::ZERO, T::ZERO, T::ZERO],
+            dual: [zero; 3],
+            q: zero,
+        }
     }
 
-    pub(super) fn indices(&self) -> &[usize] {
-        &self.indices[..self.len]
+    /// The places of the spheres, the largest first.
+    #[inline(always)]
+    pub(super) fn support(&self) -> &[usize] {
+        &self.index[..self.len]
     }
 
-    pub(super) fn center(&self) -> DVec3 {
-        self.center
+    /// Adds a sphere without solving.
+    #[inline(always)]
+    fn push(&mut self, index: usize, spheres: &[Sphere]) {
+        let first = self.index[0];
+        if spheres[index].radius() > spheres[first].radius() {
+            (self.index[0], self.index[self.len]) = (index, first);
+        } else {
+            self.index[self.len] = index;
+        }
+        self.len += 1;
     }
 
-    pub(super) fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Returns the basis of these spheres and one more that sticks out: of all subsets with the new one, the one
-    /// whose sphere encloses all with the smallest radius.
-    pub(super) fn with(&self, new: usize, spheres: &[Sphere]) -> Self {
-        let mut best: Option<(Self, f64)> = None;
-        for mask in 0_u32..1 << self.len {
-            if mask.count_ones() > 3 {
-                continue;
-            }
-            let mut subset = Self { indices: [new; 4], len: 1, center: DVec3::ZERO, radius: 0.0 };
-            for (bit, &index) in self.indices().iter().enumerate() {
-                if mask >> bit & 1 == 1 {
-                    subset.indices[subset.len] = index;
-                    subset.len += 1;
+    /// Takes the sphere at `place` out, without solving.
+    #[inline(always)]
+    fn remove(&mut self, place: usize, spheres: &[Sphere]) -> usize {
+        let out = self.index[place];
+        self.len -= 1;
+        self.index[place] = self.index[self.len];
+        if place == 0 {
+            for other in 1..self.len {
+                if spheres[self.index[other]].radius() > spheres[self.index[0]].radius() {
+                    self.index.swap(0, other);
                 }
             }
-            if !subset.solve(spheres) {
-                continue;
-            }
-            let reach = self.indices().iter().chain([&new]).fold(0.0_f64, |reach, &i| {
-                reach.max((spheres[i].center() - subset.center).length() + spheres[i].radius())
-            });
-            if best.as_ref().is_none_or(|(_, least)| reach < *least) {
-                best = Some((subset, reach));
-            }
         }
-        best.map_or_else(|| Self::single(new, &spheres[new]), |(basis, _)| basis)
+        out
     }
 
-    /// Finds the sphere that all spheres of the basis touch from inside, with its center in the plane, line or point
-    /// that their centers span. False if there is none.
+    /// Solves for the center and the radius. False if no sphere was found that all touch from inside; then the
+    /// numbers mean nothing. Coordinates of the center may be negative.
     fn solve(&mut self, spheres: &[Sphere]) -> bool {
-        // The largest sphere is the origin, so that the others have s <= 0 and nothing cancels.
-        let largest = (0..self.len)
-            .max_by(|&i, &j| spheres[self.indices[i]].radius().total_cmp(&spheres[self.indices[j]].radius()))
-            .expect("a basis has at least one sphere");
-        self.indices.swap(0, largest);
-        let origin = spheres[self.indices[0]];
-        let (mut p, mut s, mut h) = ([DVec3::ZERO; 3], [0.0; 3], [0.0; 3]);
-        for i in 1..self.len {
-            let sphere = spheres[self.indices[i]];
-            p[i - 1] = sphere.center() - origin.center();
-            s[i - 1] = sphere.radius() - origin.radius();
-            let length = p[i - 1].length();
-            h[i - 1] = 0.5 * (length - s[i - 1]) * (length + s[i - 1]);
-            if length <= -s[i - 1] {
-                return false;
-            }
+        let base = &spheres[self.index[0]];
+        let (c0, r0) = (base.center(), base.radius());
+        let zero = [T::ZERO; 3];
+        if self.len == 1 {
+            *self = Self::single(self.index[0]);
+            return true;
         }
-        // The dual basis k of the differences: k_i . p_j = 1 if i = j, else 0.
-        let k = match self.len {
-            1 => [DVec3::ZERO; 3],
-            2 => [p[0] / p[0].length_squared(), DVec3::ZERO, DVec3::ZERO],
-            3 => {
-                let n = p[0].cross(p[1]);
-                let n2 = n.length_squared();
-                [p[1].cross(n) / n2, n.cross(p[0]) / n2, DVec3::ZERO]
-            }
-            _ => {
-                let m = DMat3::from_cols(p[0], p[1], p[2]).inverse().transpose();
-                [m.x_axis, m.y_axis, m.z_axis]
-            }
-        };
-        let at_zero = h[0] * k[0] + h[1] * k[1] + h[2] * k[2];
-        let slope = s[0] * k[0] + s[1] * k[1] + s[2] * k[2];
-        // |at_zero + slope rho| = rho, where rho is the radius less that of the largest sphere.
-        let (a, b, c) = (slope.length_squared() - 1.0, at_zero.dot(slope), at_zero.length_squared());
-        let discriminant = b * b - a * c;
-        if self.len > 1 && !(discriminant >= 0.0) {
-            return false;
+        let (p1, s1, h1) = relative::<T>(&spheres[self.index[1]], c0, r0);
+        if self.len == 2 {
+            let p2 = dot(p1, p1);
+            let length = p2.sqrt();
+            let rho = (length + s1) * T::from(0.5);
+            let inverse = T::ONE / length;
+            let share = rho * inverse;
+            let dual = times(p1, inverse * inverse);
+            self.x = [p1[0] * share, p1[1] * share, p1[2] * share];
+            self.rho = rho;
+            self.weight = [T::ONE - share, share, T::ZERO, T::ZERO];
+            self.dual = [dual, zero, zero];
+            self.q = [dual[0] * s1, dual[1] * s1, dual[2] * s1];
+            // If the first contains the second there is no such sphere, or their difference is zero.
+            return T::ZERO.below(rho) && share.is_finite();
         }
-        let t = -(b + discriminant.sqrt().copysign(b));
-        let rho = [t / a, c / t]
-            .into_iter()
-            .filter(|rho| rho.is_finite() && *rho >= 0.0)
-            .fold(f64::INFINITY, f64::min);
-        let rho = if self.len == 1 { 0.0 } else { rho };
-        let offset = at_zero + rho * slope;
-        self.center = origin.center() + offset;
-        self.radius = origin.radius() + rho;
-        self.center.is_finite() && self.radius.is_finite()
+        let (p2, s2, h2) = relative::<T>(&spheres[self.index[2]], c0, r0);
+        let n = cross(p1, p2);
+        if self.len == 3 {
+            let inverse = T::ONE / dot(n, n);
+            self.dual = [times(cross(p2, n), inverse), times(cross(n, p1), inverse), zero];
+            return self.finish([h1, h2, T::ZERO], [s1, s2, T::ZERO]);
+        }
+        let (p3, s3, h3) = relative::<T>(&spheres[self.index[3]], c0, r0);
+        let inverse = T::ONE / dot(n, p3);
+        self.dual = [times(cross(p2, p3), inverse), times(cross(p3, p1), inverse), times(n, inverse)];
+        self.finish([h1, h2, h3], [s1, s2, s3])
     }
+
+    /// Solves the quadratic for `rho` once the dual basis is there.
+    #[inline]
+    fn finish(&mut self, h: [T; 3], s: [T; 3]) -> bool {
+        let (a, q) = (combine(h, &self.dual), combine(s, &self.dual));
+        // (q.q - 1) rho² + 2 a.q rho + a.a = 0: the smallest root that is not negative, without cancellation.
+        let (second, first, constant) = (dot(q, q) - T::ONE, dot(a, q), dot(a, a));
+        let root = (first * first - second * constant).sqrt();
+        let (numerator, denominator) =
+            if T::ZERO.below(first) { (first + root, -second) } else { (constant, root - first) };
+        let rho = numerator / denominator;
+        let x = [a[0] + rho * q[0], a[1] + rho * q[1], a[2] + rho * q[2]];
+        let [k1, k2, k3] = &self.dual;
+        let (w1, w2, w3) = (dot(*k1, x), dot(*k2, x), dot(*k3, x));
+        self.x = x;
+        self.rho = rho;
+        self.weight = [T::ONE - (w1 + w2 + w3), w1, w2, w3];
+        self.q = q;
+        !rho.below(T::ZERO) && rho.is_finite() && self.weight[0].is_finite()
+    }
+
+    /// The place of the most negative coordinate, other than that of the sphere `keep`; `None` if none is negative.
+    #[inline(always)]
+    fn most_negative(&self, keep: usize) -> Option<usize> {
+        let mut least = T::ZERO;
+        let mut found = None;
+        for place in 0..4 {
+            if place < self.len && self.weight[place].below(least) && self.index[place] != keep {
+                (least, found) = (self.weight[place], Some(place));
+            }
+        }
+        found
+    }
+
+    /// The center less `origin`, and the radius.
+    #[inline(always)]
+    pub(super) fn sphere(&self, spheres: &[Sphere], origin: DVec3) -> ([T; 3], T) {
+        let first = &spheres[self.index[0]];
+        let from = offset::<T>(first.center(), origin);
+        let center = [from[0] + self.x[0], from[1] + self.x[1], from[2] + self.x[2]];
+        (center, self.rho + T::from(first.radius()))
+    }
+
+    /// How far `sphere` sticks out: its reach from the center less the radius.
+    #[inline(always)]
+    pub(super) fn excess(&self, sphere: &Sphere, spheres: &[Sphere]) -> T {
+        let (from, radius) = self.sphere(spheres, sphere.center());
+        dot(from, from).sqrt() + (T::from(sphere.radius()) - radius)
+    }
+
+    /// Returns the minimal sphere of these spheres and one more that sticks out of theirs.
+    ///
+    /// Drops what the signs of the coordinates say must go, checks that what was dropped lies inside, and otherwise
+    /// tries all subsets.
+    #[inline(never)]
+    pub(super) fn with(&self, index: usize, spheres: &[Sphere]) -> Self {
+        let mut next = *self;
+        let mut dropped = [index; 4];
+        let mut drops = 0;
+        if self.len == 4 {
+            // Five spheres: weight moves to the new one and off the others in proportion to its barycentric
+            // coordinates among them; the one whose weight runs out first leaves.
+            let p = offset::<T>(spheres[index].center(), spheres[self.index[0]].center());
+            let [k1, k2, k3] = self.dual;
+            let (k1, k2, k3) = (dot(k1, p), dot(k2, p), dot(k3, p));
+            let share = [T::ONE - (k1 + k2 + k3), k1, k2, k3];
+            // weight[i] / share[i] < weight[out] / share[out], without dividing
+            let mut out = 0;
+            let mut some = T::ZERO.below(share[0]);
+            for place in 1..4 {
+                let sooner =
+                    !some || (self.weight[place] * share[out]).below(self.weight[out] * share[place]);
+                if T::ZERO.below(share[place]) && sooner {
+                    (out, some) = (place, true);
+                }
+            }
+            dropped[0] = next.remove(out, spheres);
+            drops = 1;
+        }
+        next.push(index, spheres);
+        loop {
+            if !next.solve(spheres) {
+                return self.best_subset(index, spheres);
+            }
+            let Some(place) = next.most_negative(index) else { break };
+            dropped[drops] = next.remove(place, spheres);
+            drops += 1;
+        }
+        let radius = |of: &Self| of.rho + T::from(spheres[of.index[0]].radius());
+        if !radius(self).below(radius(&next)) {
+            return self.best_subset(index, spheres);
+        }
+        for &out in &dropped[..drops] {
+            if !next.excess(&spheres[out], spheres).below(radius(&next) * T::from(T::INSIDE)) {
+                return self.best_subset(index, spheres);
+            }
+        }
+        next
+    }
+
+    /// Returns the minimal sphere of these spheres and one more: of all subsets with the new one, the one whose
+    /// sphere, grown until it encloses all, is smallest.
+    #[cold]
+    #[inline(never)]
+    fn best_subset(&self, index: usize, spheres: &[Sphere]) -> Self {
+        let mut best = Self::single(index);
+        let mut least = self.grown(&best, index, spheres);
+        for mask in 1_u32..1 << self.len {
+            if mask.count_ones() == 4 {
+                continue;
+            }
+            let mut subset = Self::single(index);
+            for place in 0..self.len {
+                if mask >> place & 1 == 1 {
+                    subset.push(self.index[place], spheres);
+                }
+            }
+            if subset.solve(spheres) {
+                let grown = self.grown(&subset, index, spheres);
+                if grown.below(least) {
+                    (best, least) = (subset, grown);
+                }
+            }
+        }
+        best
+    }
+
+    /// The radius that `candidate` needs around its center to enclose these spheres and one more.
+    fn grown(&self, candidate: &Self, index: usize, spheres: &[Sphere]) -> T {
+        let mut excess = T::ZERO;
+        for &sphere in self.support().iter().chain([&index]) {
+            let sticks_out = candidate.excess(&spheres[sphere], spheres);
+            if excess.below(sticks_out) {
+                excess = sticks_out;
+            }
+        }
+        candidate.rho + T::from(spheres[candidate.index[0]].radius()) + excess
+    }
+}
+
+/// `p`, `s` and `h` of a sphere: see the head of this file.
+#[inline(always)]
+fn relative<T: Real>(sphere: &Sphere, center: DVec3, radius: f64) -> ([T; 3], T, T) {
+    let p = offset::<T>(sphere.center(), center);
+    let s = T::difference(sphere.radius(), radius);
+    (p, s, (dot(p, p) - s * s) * T::from(0.5))
+}
+
+#[inline(always)]
+fn times<T: Real>(v: [T; 3], factor: T) -> [T; 3] {
+    [v[0] * factor, v[1] * factor, v[2] * factor]
+}
+
+#[inline(always)]
+fn combine<T: Real>(f: [T; 3], [a, b, c]: &[[T; 3]; 3]) -> [T; 3] {
+    [
+        f[0] * a[0] + f[1] * b[0] + f[2] * c[0],
+        f[0] * a[1] + f[1] * b[1] + f[2] * c[1],
+        f[0] * a[2] + f[1] * b[2] + f[2] * c[2],
+    ]
 }

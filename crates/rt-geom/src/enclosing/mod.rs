@@ -1,4 +1,4 @@
-//! SphEng: the minimal sphere that encloses given spheres.
+//! `SphEng`: the minimal sphere that encloses given spheres.
 //!
 //! Farthest-first pivoting. At most four of the spheres, the support, decide the answer: the minimal sphere of the
 //! support is a lower bound of the minimal sphere of all. As long as some sphere sticks out of it, the one that
@@ -7,11 +7,27 @@
 //! is wrong for spheres: K. Fischer and B. Gärtner, "The smallest enclosing ball of balls", 2004.)
 
 mod basis;
+mod certify;
+mod extreme;
+mod few;
+mod lanes;
+mod many;
+#[allow(dead_code, reason = "for the build of the tree")]
+pub(crate) mod nodes;
+mod real;
+mod refine;
 
+#[cfg(not(target_arch = "x86_64"))]
+use fearless_simd::dispatch;
+use fearless_simd::{Level, Simd};
 use glam::DVec3;
 
 use crate::Sphere;
-use basis::Basis;
+use basis::Tangent;
+use certify::{Bracket, U};
+use extreme::extreme;
+use lanes::{LANES, Lanes};
+use many::Blocks;
 
 /// What [`enclosing_sphere`] gives: the sphere, the spheres that decide it, and how small any other could be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +41,10 @@ pub struct Enclosing {
 }
 
 impl Enclosing {
+    fn single(index: usize, sphere: &Sphere) -> Self {
+        Self { sphere: *sphere, lower_bound: sphere.radius(), support: [index; 4], support_len: 1 }
+    }
+
     /// The indices of the spheres that decide the answer: one to four, ascending.
     pub fn support(&self) -> &[usize] {
         &self.support[..self.support_len]
@@ -35,83 +55,206 @@ impl Enclosing {
 ///
 /// `None` if there are none, or if no sphere with a finite double radius encloses them.
 pub fn enclosing_sphere(spheres: &[Sphere]) -> Option<Enclosing> {
-    let first = spheres.first()?;
-    let reach = farthest(spheres, first.center()).1;
-    let (low, high) = (f64::from_bits(0x2D50_0000_0000_0000), f64::from_bits(0x58E0_0000_0000_0000)); // 1e-90, 1e120
-    if reach == 0.0 || (low..high).contains(&reach) {
-        return pivot(spheres, 1.0);
-    }
-    // Far from 1, squares would over- or underflow: solve a copy scaled by a power of two. Where scaling up would
-    // overflow, all coordinates of that axis are equal (the set is smaller than their spacing).
-    let exponent = if reach < 1.0 { 600 } else { -540 };
-    let scale = 2.0_f64.powi(exponent);
-    let mut collapsed = DVec3::ZERO;
-    let scaled: Option<Vec<Sphere>> = spheres
-        .iter()
-        .map(|sphere| {
-            let mut center = sphere.center() * scale;
-            for axis in 0..3 {
-                if !center[axis].is_finite() {
-                    center[axis] = 0.0;
-                    collapsed[axis] = sphere.center()[axis];
-                }
+    enclosing_at(Level::new(), spheres)
+}
+
+/// [`enclosing_sphere`] with the instructions of a given level; the bits of the answer do not depend on it.
+fn enclosing_at(level: Level, spheres: &[Sphere]) -> Option<Enclosing> {
+    by_level!(level, simd => enclosing(simd, spheres))
+}
+
+/// Compiles an expression for each level that differs here (fewer copies than `fearless_simd::dispatch` makes on x86),
+/// and runs that of the given level.
+macro_rules! by_level {
+    ($level:expr, $simd:ident => $run:expr) => {{
+        let level: Level = $level;
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some($simd) = level.as_avx512() {
+                fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $run,
+                )
+            } else if let Some($simd) = level.as_avx2() {
+                fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $run,
+                )
+            } else {
+                let $simd = fearless_simd::Fallback::new();
+                $run
             }
-            Sphere::new(center, sphere.radius() * scale)
-        })
-        .collect();
-    let mut answer = pivot(&scaled?, scale)?;
-    let center = answer.sphere.center() / scale + collapsed;
-    answer.sphere = Sphere::new(center, (answer.sphere.radius() / scale).next_up())?;
-    answer.lower_bound = (answer.lower_bound / scale).next_down().max(0.0);
-    Some(answer)
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        fearless_simd::dispatch!(level, $simd => $run)
+    }};
+}
+use by_level;
+
+/// Within these limits of the largest reach no fourth power over- or underflows harmfully, in double-double either.
+const ORDINARY: std::ops::Range<f64> = 1e-40..1e50;
+
+#[inline(always)]
+fn enclosing<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
+    match spheres {
+        [] => None,
+        [one] => Some(Enclosing::single(0, one)),
+        [a, b] => two(simd, spheres, a, b),
+        // Each in a function of its own, for the compiler's sake.
+        _ if spheres.len() <= LANES => simd.vectorize(
+            #[inline(always)]
+            || few_spheres::<S, 1>(simd, spheres),
+        ),
+        _ if spheres.len() <= 8 * LANES => simd.vectorize(
+            #[inline(always)]
+            || few_spheres::<S, 8>(simd, spheres),
+        ),
+        _ => simd.vectorize(
+            #[inline(always)]
+            || many_spheres(simd, spheres),
+        ),
+    }
 }
 
-/// Returns the index of the sphere that reaches farthest from `center`, and how far.
-fn farthest(spheres: &[Sphere], center: DVec3) -> (usize, f64) {
-    let mut best = (0, -1.0);
-    for (index, sphere) in spheres.iter().enumerate() {
-        let reach = (sphere.center() - center).length() + sphere.radius();
-        if reach.is_nan() || reach > best.1 {
-            best = (index, reach);
-        }
+/// Two spheres, in closed form.
+#[inline(always)]
+fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<Enclosing> {
+    let reach = (a.center() - b.center()).length() + a.radius() + b.radius();
+    if !ORDINARY.contains(&reach) {
+        return extreme(spheres);
     }
-    best
+    let pair =
+        if certify::has_fma(simd) { certify::pair::<true>(a, b) } else { certify::pair::<false>(a, b) };
+    match pair {
+        Some((bracket, bound)) => finish(spheres, &bracket, bound, &[0, 1]),
+        None => simd.vectorize(
+            #[inline(always)]
+            || few_spheres::<S, 1>(simd, spheres),
+        ),
+    }
 }
 
-/// Relative error bound of a reach computed in f64, with a margin: see `docs/numerics.md`, section 8.
-const REACH_ERROR: f64 = 8.0 * (f64::EPSILON / 2.0);
-
-/// No set known needs more than a few dozen pivots.
-const MAX_PIVOTS: usize = 100;
-
-fn pivot(spheres: &[Sphere], _scale: f64) -> Option<Enclosing> {
-    let mut basis = Basis::single(0, &spheres[0]);
-    let mut best: Option<(Basis, f64)> = None;
-    let mut stalled = 0;
-    for _ in 0..MAX_PIVOTS {
-        let (index, reach) = farthest(spheres, basis.center());
-        if best.as_ref().is_none_or(|(_, least)| reach < *least) {
-            best = Some((basis.clone(), reach));
-        }
-        if reach <= basis.radius() || basis.indices().contains(&index) {
-            break;
-        }
-        let next = basis.with(index, spheres);
-        stalled = if next.radius() > basis.radius() { 0 } else { stalled + 1 };
-        if stalled == 3 {
-            break;
-        }
-        basis = next;
+/// At most eight spheres to a vector, without touching the heap.
+#[inline(always)]
+fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
+    let origin = spheres[0].center();
+    let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
+    if !ORDINARY.contains(&lanes.reach(simd)) {
+        return extreme(spheres);
     }
-    let (basis, reach) = best?;
-    let radius = (reach * (1.0 + REACH_ERROR)).next_up();
-    let sphere = Sphere::new(basis.center(), radius)?;
-    let mut support = [0; 4];
-    let mut indices = basis.indices().to_vec();
-    indices.sort_unstable();
-    support[..indices.len()].copy_from_slice(&indices);
-    let lower_bound = basis.indices().iter().map(|&i| spheres[i].radius()).fold(0.0, f64::max);
-    Some(Enclosing { sphere, lower_bound, support, support_len: indices.len() })
+    let tangent = few::pivot(simd, &Tangent::single(0), &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
+    let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
+    // Who else is close enough to the boundary to stick out?
+    let (center, limit) = near(&tangent, &bracket, spheres, origin);
+    let mut near = lanes.beyond(simd, center, limit) & (u64::MAX >> (64 - spheres.len()));
+    for &index in tangent.support() {
+        near &= !(1 << index);
+    }
+    let before = bracket.high;
+    while near != 0 {
+        let mut four = [near.trailing_zeros() as usize; 4];
+        for index in &mut four {
+            if near != 0 {
+                *index = near.trailing_zeros() as usize;
+                near &= near - 1;
+            }
+        }
+        bracket.enclose(simd, four.map(|index| &spheres[index]));
+    }
+    if bracket.high > before || !settled || doubtful(&bracket, bound) {
+        return refined(spheres, &tangent, &bracket, bound);
+    }
+    finish(spheres, &bracket, bound, tangent.support())
+}
+
+const IN_ORDER: [usize; 8 * LANES] = {
+    let mut order = [0; 8 * LANES];
+    let mut i = 0;
+    while i < order.len() {
+        order[i] = i;
+        i += 1;
+    }
+    order
+};
+
+/// More spheres than registers hold.
+#[inline(always)]
+fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
+    let origin = spheres[0].center();
+    if !ORDINARY.contains(&many::reach_from(spheres, origin)) {
+        return extreme(spheres);
+    }
+    let (tangent, blocks) = Blocks::support(simd, spheres, origin);
+    let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
+    let (center, limit) = near(&tangent, &bracket, spheres, origin);
+    let before = bracket.high;
+    let mut four = [tangent.support()[0]; 4];
+    let mut held = 0;
+    blocks.beyond(spheres, origin, center, limit, |index| {
+        four[held] = index;
+        held += 1;
+        if held == 4 {
+            bracket.enclose(simd, four.map(|index| &spheres[index]));
+            held = 0;
+        }
+    });
+    bracket.enclose(simd, four.map(|index| &spheres[index]));
+    if bracket.high > before || !settled || doubtful(&bracket, bound) {
+        return refined(spheres, &tangent, &bracket, bound);
+    }
+    finish(spheres, &bracket, bound, tangent.support())
+}
+
+/// The center of `tangent` less `origin`, and a limit: what reaches less far from there lies inside `bracket`.
+#[inline(always)]
+fn near(tangent: &Tangent<f64>, bracket: &Bracket, spheres: &[Sphere], origin: DVec3) -> ([f64; 3], f64) {
+    let (center, _) = tangent.sphere(spheres, origin);
+    let shift = (bracket.center - origin) - DVec3::from(center);
+    (center, (bracket.low - shift.length()) * (1.0 - 64.0 * U))
+}
+
+/// Whether the gap between the radius and its lower bound is more than what rounding the center to doubles costs.
+#[inline(always)]
+fn doubtful(bracket: &Bracket, bound: f64) -> bool {
+    let spacing = bracket.center.abs().max_element() * (2.0 * U);
+    let close = bracket.high - bound <= bracket.high * (6.0 * U) + spacing;
+    !close
+}
+
+/// The answer of the cold path, or of the fast one if that is better.
+#[cold]
+#[inline(never)]
+fn refined(spheres: &[Sphere], tangent: &Tangent<f64>, fast: &Bracket, fast_bound: f64) -> Option<Enclosing> {
+    let (better, bracket, bound) = refine::refine(spheres, tangent.support());
+    let bound = if fast_bound > bound { fast_bound } else { bound };
+    if fast.high < bracket.high {
+        return finish(spheres, fast, bound, tangent.support());
+    }
+    finish(spheres, &bracket, bound, better.support())
+}
+
+#[inline(always)]
+fn finish(spheres: &[Sphere], bracket: &Bracket, lower_bound: f64, support: &[usize]) -> Option<Enclosing> {
+    let radius = if bracket.low < bracket.high { certify::settle(bracket, spheres) } else { bracket.high };
+    let sphere = Sphere::new(bracket.center, radius)?;
+    let (support, support_len) = sorted(support);
+    Some(Enclosing { sphere, lower_bound, support, support_len })
+}
+
+fn sorted(support: &[usize]) -> ([usize; 4], usize) {
+    let mut sorted = [support[0]; 4];
+    for (place, &index) in support.iter().enumerate() {
+        sorted[place] = index;
+        let mut at = place;
+        while at > 0 && sorted[at - 1] > index {
+            sorted.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+    sorted[support.len()..].fill(support[0]);
+    (sorted, support.len())
 }
 
 #[cfg(test)]

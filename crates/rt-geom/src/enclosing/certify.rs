@@ -1,0 +1,361 @@
+//! From an approximate answer to one that is proved: the center rounded to doubles, the radius rounded up so that
+//! everything lies inside in exact arithmetic, and a lower bound for the radius of any enclosing sphere.
+//!
+//! Reaches are computed in double-double arithmetic, four spheres side by side. `docs/numerics.md`, section 8, proves
+//! every bound used here.
+
+use fearless_simd::{Simd, f64x4, prelude::*};
+use glam::DVec3;
+use rt_math::exact::{DoubleDouble, Dyadic};
+
+use super::basis::{Tangent, offset};
+use super::real::{Wide, dot};
+use crate::Sphere;
+
+/// Half the distance from 1 to the next double, the relative error of one rounded operation.
+pub(super) const U: f64 = f64::EPSILON / 2.0;
+
+/// Relative error bound of a reach computed in double-double arithmetic (proved: 75 u²).
+const REACH_ERROR: f64 = 128.0 * U * U;
+
+/// A center, and the radius around it that is proved to enclose some spheres, between two doubles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bracket {
+    pub(super) center: DVec3,
+    /// No smaller double encloses them.
+    pub(super) low: f64,
+    /// This double encloses them.
+    pub(super) high: f64,
+}
+
+/// Whether the instructions of this level have a fused multiply-add.
+#[inline(always)]
+pub(super) fn has_fma<S: Simd>(simd: S) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return simd.level().as_avx2().is_some();
+    #[cfg(target_arch = "aarch64")]
+    return simd.level().as_neon().is_some();
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    return false;
+}
+
+/// `a + b` and its rounding error, exactly, lane by lane (Knuth).
+#[inline(always)]
+fn two_sum<S: Simd>(a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// `a²` and its rounding error, exactly, lane by lane (without fused multiply-add: Dekker).
+#[inline(always)]
+fn two_square<S: Simd>(simd: S, a: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
+    let square = a * a;
+    if has_fma(simd) {
+        return (square, a.mul_sub_precise(a, square));
+    }
+    let shifted = a * 134_217_729.0; // 2^27 + 1
+    let high = shifted - (shifted - a);
+    let low = a - high;
+    (square, low * low - ((square - high * high) - (high + high) * low))
+}
+
+/// How far four spheres reach from a center.
+#[derive(Clone, Copy)]
+struct Reach<S: Simd> {
+    /// The center less those of the spheres, rounded.
+    offset: [f64x4<S>; 3],
+    /// The length of the offset, rounded.
+    distance: f64x4<S>,
+    /// The reach is `high + low`, up to `error`; `high` is the sum rounded.
+    high: f64x4<S>,
+    low: f64x4<S>,
+    error: f64x4<S>,
+}
+
+/// Along one axis: the offset of the center from the spheres', rounded; its square, and the rest of the square.
+#[inline(always)]
+fn axis<S: Simd>(simd: S, from: f64, to: [f64; 4]) -> (f64x4<S>, f64x4<S>, f64x4<S>) {
+    let (high, low) = two_sum(f64x4::splat(simd, from), -f64x4::simd_from(simd, to));
+    let (square, error) = two_square(simd, high);
+    (high, square, error + (high + high) * low)
+}
+
+#[inline(always)]
+fn reach<S: Simd>(simd: S, spheres: [&Sphere; 4], center: DVec3) -> Reach<S> {
+    let (dx, x, x_error) = axis(simd, center.x, spheres.map(|sphere| sphere.center().x));
+    let (dy, y, y_error) = axis(simd, center.y, spheres.map(|sphere| sphere.center().y));
+    let (dz, z, z_error) = axis(simd, center.z, spheres.map(|sphere| sphere.center().z));
+    let radius = f64x4::simd_from(simd, spheres.map(Sphere::radius));
+    let (sum, sum_error) = two_sum(x, y);
+    let (square, square_error) = two_sum(sum, z);
+    let tail = (x_error + y_error) + (z_error + (sum_error + square_error));
+    let root = square.sqrt();
+    let (again, again_error) = two_square(simd, root);
+    let rest = (((square - again) - again_error) + tail) / (root + root);
+    // At the very center the root is zero, and the quotient not a number.
+    let zero = f64x4::splat(simd, 0.0);
+    let rest = root.simd_eq(zero).select(zero, rest);
+    let (high, low) = two_sum(root, radius);
+    let low = low + rest;
+    let sum = high + low;
+    let low = low - (sum - high);
+    let same = (dx.abs() + dy.abs() + dz.abs()).simd_eq(zero);
+    let error = same.select(zero, sum * REACH_ERROR);
+    Reach { offset: [dx, dy, dz], distance: root, high: sum, low, error }
+}
+
+/// The double after a positive normal one, lane by lane (S. Rump, P. Zimmermann, S. Boldo, G. Melquiond, "Computing
+/// predecessor and successor in rounding to nearest", 2009).
+#[inline(always)]
+fn next_up<S: Simd>(a: f64x4<S>) -> f64x4<S> {
+    a + a * (U * (1.0 + 2.0 * U))
+}
+
+/// The smallest double that is not below `high + low`, for `high` positive and normal and the larger by far.
+#[inline(always)]
+fn round_up<S: Simd>(simd: S, high: f64x4<S>, low: f64x4<S>) -> f64 {
+    let sum = high + low;
+    let rest = low - (sum - high);
+    let up = rest.simd_gt(f64x4::splat(simd, 0.0)).select(next_up(sum), sum);
+    up.reduce_max()
+}
+
+/// Moves the center of `tangent` to the doubles nearest to the true center, and brackets the radius there.
+///
+/// Returns the bracket, a lower bound for the radius of any sphere that encloses the spheres of `tangent`, and whether
+/// the nearest doubles are clear.
+#[inline(always)]
+pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64, bool) {
+    simd.vectorize(
+        #[inline(always)]
+        || certify_here(simd, tangent, all),
+    )
+}
+
+#[inline(always)]
+fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64, bool) {
+    let support = tangent.support();
+    let first = &all[support[0]];
+    let origin = first.center();
+    if support.len() == 1 {
+        let radius = first.radius();
+        return (Bracket { center: origin, low: radius, high: radius }, radius, true);
+    }
+    let at = |place: usize| support.get(place).map_or(first, |&index| &all[index]);
+    let spheres = [at(0), at(1), at(2), at(3)];
+    let [k1, k2, k3] = tangent.dual;
+    let q = DVec3::from(tangent.q);
+    let (k1, k2, k3) = (DVec3::from(k1), DVec3::from(k2), DVec3::from(k3));
+    let mut center = origin + DVec3::from(tangent.x);
+    let mut rounds = 0;
+    loop {
+        let reach = reach(simd, spheres, center);
+        // One Newton step: the reaches less the first one are the residuals.
+        let base = reach.high[0];
+        let base_low = reach.low[0];
+        let residual = (reach.high - base) + (reach.low - base_low);
+        let moved = residual * reach.distance;
+        let a = k1 * moved[1] + k2 * moved[2] + k3 * moved[3];
+        let x = center - origin;
+        let wider = x.dot(a) / (reach.distance[0] - x.dot(q));
+        // The rounding of the center may have left the flat of the centers: go back too, by what the dual basis
+        // leaves of the difference from the unrounded center.
+        let [dx, dy, dz] = reach.offset;
+        let lost = (center - origin) - DVec3::from(tangent.x);
+        let seen = dx * lost.x + dy * lost.y + dz * lost.z;
+        let inside = k1 * (seen[0] - seen[1]) + k2 * (seen[0] - seen[2]) + k3 * (seen[0] - seen[3]);
+        let wish = a + q * wider - (lost - inside);
+        let next = center + wish;
+        let next = if next.is_finite() { next } else { center };
+        let step = next - center;
+        // The reaches at the next center: |v + e| is between |v| + u.e and that plus |e|² / 2|v|.
+        let along = (dx * step.x + dy * step.y + dz * step.z) / reach.distance;
+        let length = step.length();
+        let bend = length * length / reach.distance;
+        let none = f64x4::splat(simd, 0.0);
+        let still = f64x4::splat(simd, length).simd_eq(none);
+        let along = still.select(none, along);
+        let error = reach.error + still.select(none, bend + 16.0 * U * length);
+        rounds += 1;
+        let good = error.reduce_max() <= base * NEGLIGIBLE;
+        if !good && rounds < MAX_ROUNDS {
+            center = next;
+            continue;
+        }
+        let still = !good;
+        // Where doubles lie far apart, a center half-way between two is one for the cold path, which tries both.
+        let coarse = next.abs().max_element() * U > 32.0 * U * base;
+        let settled = !(coarse && half_way(next, wish - step));
+        let (next, step, length) = if still { (center, DVec3::ZERO, 0.0) } else { (next, step, length) };
+        let along = if still { none } else { along };
+        let error = if still { reach.error } else { error };
+        let low = reach.low + along;
+        let bracket = Bracket {
+            center: next,
+            low: round_up(simd, reach.high, low - error),
+            high: round_up(simd, reach.high, low + error),
+        };
+        // The lower bound: weights that nearly balance the directions from the touching points to the center.
+        let weights = tangent.weight;
+        let weight = |place: usize| if place < support.len() { weights[place].max(0.0) } else { 0.0 };
+        let weight = f64x4::simd_from(simd, [weight(0), weight(1), weight(2), weight(3)]);
+        let share = weight * reach.distance;
+        let total = share.reduce_sum();
+        let mean = (share * ((reach.high - base) + low)).reduce_sum() / total;
+        let pull = (weight * (dx + step.x)).reduce_sum().abs()
+            + (weight * (dy + step.y)).reduce_sum().abs()
+            + (weight * (dz + step.z)).reduce_sum().abs();
+        let nearest = reach.distance.reduce_min();
+        let pull = pull / total + 16.0 * U + 2.0 * length / nearest;
+        let most = bracket.high;
+        let gap = (most - base) - mean + 2.0 * most * pull;
+        let far = gap * (0.5 / BALANCE) + most * BALANCE;
+        let slack = error.reduce_max() + pull * far + 8.0 * U * mean.abs();
+        let below = mean - slack * (1.0 + 16.0 * U);
+        let sum = base + below;
+        let bound = if below - (sum - base) < 0.0 { sum.next_down() } else { sum };
+        let bound = if bound > first.radius() { bound } else { first.radius() };
+        return (bracket, bound, settled);
+    }
+}
+
+/// Whether `rest`, what rounding took from `center`, is so close to half the spacing of doubles on some axis that its
+/// own error could have changed the rounding.
+#[cold]
+fn half_way(center: DVec3, rest: DVec3) -> bool {
+    let near = |center: f64, rest: f64| {
+        let spacing = center.abs().next_up() - center.abs();
+        rest.abs() > (0.5 - 1e-4) * spacing
+    };
+    near(center.x, rest.x) || near(center.y, rest.y) || near(center.z, rest.z)
+}
+
+/// An error of the reaches that is small beside a unit in the last place.
+const NEGLIGIBLE: f64 = 1024.0 * U * U;
+
+/// Newton's iteration converges quadratically from an approximation that is good to a few digits.
+const MAX_ROUNDS: usize = 4;
+
+/// Any positive number gives a true bound; this one a sharp bound if the gap is a few units in the last place.
+const BALANCE: f64 = 1.0 / 67_108_864.0; // 2^-26
+
+impl Bracket {
+    /// Widens the bracket so that it holds for four more spheres (which may repeat).
+    #[inline(always)]
+    pub(super) fn enclose<S: Simd>(&mut self, simd: S, spheres: [&Sphere; 4]) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.enclose_here(simd, spheres),
+        );
+    }
+
+    #[inline(always)]
+    fn enclose_here<S: Simd>(&mut self, simd: S, spheres: [&Sphere; 4]) {
+        let reach = reach(simd, spheres, self.center);
+        self.low = self.low.max(round_up(simd, reach.high, reach.low - reach.error));
+        self.high = self.high.max(round_up(simd, reach.high, reach.low + reach.error));
+    }
+}
+
+/// Widens the bracket so that it holds for all of `spheres`.
+pub(super) fn enclose_all(bracket: &mut Bracket, spheres: &[Sphere]) {
+    for sphere in spheres {
+        let rough = (sphere.center() - bracket.center).length() + sphere.radius();
+        // A sphere that is inside by more than the error of this estimate changes nothing.
+        if rough < bracket.low * (1.0 - 16.0 * U) {
+            continue;
+        }
+        let from = offset::<Wide>(sphere.center(), bracket.center);
+        let reach = dot(from, from).sqrt() + Wide::new(sphere.radius());
+        let error = if from == [Wide::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
+        let up = |low: f64| {
+            let sum = reach.high() + low;
+            if low - (sum - reach.high()) > 0.0 { sum.next_up() } else { sum }
+        };
+        bracket.low = bracket.low.max(up(reach.low() - error));
+        bracket.high = bracket.high.max(up(reach.low() + error));
+    }
+}
+
+/// Whether `sphere` lies inside the sphere around `center` with `radius`, its boundary included: exactly.
+#[cold]
+#[inline(never)]
+pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> bool {
+    // Differences of doubles are multiples of 2^-1074 below 2^1025: 35 limbs; their squares take twice that.
+    type Number = Dyadic<72>;
+    let difference = |a: f64, b: f64| Number::from_f64(a) - Number::from_f64(b);
+    let room = difference(radius, sphere.radius());
+    if room.sign().is_lt() {
+        return false;
+    }
+    let offset = sphere.center();
+    let square = difference(center.x, offset.x).square()
+        + difference(center.y, offset.y).square()
+        + difference(center.z, offset.z).square();
+    square <= room.square()
+}
+
+/// The minimal sphere of two spheres, in closed form: the bracket, and a lower bound.
+///
+/// `None` if one lies inside the other or nearly so.
+#[inline(always)]
+pub(super) fn pair<const FMA: bool>(a: &Sphere, b: &Sphere) -> Option<(Bracket, f64)> {
+    type Number<const FMA: bool> = DoubleDouble<FMA>;
+    let (ca, cb) = (a.center(), b.center());
+    let (ra, rb) = (a.radius(), b.radius());
+    let px = Number::<FMA>::difference(cb.x, ca.x);
+    let py = Number::<FMA>::difference(cb.y, ca.y);
+    let pz = Number::<FMA>::difference(cb.z, ca.z);
+    let square = px * px + py * py + pz * pz;
+    let length = square.sqrt();
+    let s = Number::<FMA>::difference(rb, ra);
+    // The share of the way from a to b: (length + s) / 2 length.
+    let share = ((length + s) / length).scale(0.5);
+    let reach_a = length.high() * share.high();
+    let reach_b = length.high() - reach_a;
+    let nearest = reach_a.min(reach_b);
+    let radius = (length + Number::<FMA>::sum(ra, rb)).scale(0.5);
+    let apart = nearest > radius.high() * NEARLY_INSIDE;
+    if !apart {
+        return None;
+    }
+    let at = |p: Number<FMA>, c: f64| p * share + Number::<FMA>::new(c);
+    let (x, y, z) = (at(px, ca.x), at(py, ca.y), at(pz, ca.z));
+    let center = DVec3::new(x.high(), y.high(), z.high());
+    // The rounded center is off by e: |v + e| is between |v| + u.e and that plus |e|² / 2|v|.
+    let e = -DVec3::new(x.low(), y.low(), z.low());
+    let along = (e.x * px.high() + e.y * py.high() + e.z * pz.high()).abs() / length.high();
+    let bend = (e.x * e.x + e.y * e.y + e.z * e.z) / nearest;
+    let error = radius.high() * REACH_ERROR + bend + 16.0 * U * (e.x.abs() + e.y.abs() + e.z.abs());
+    let up = |low: f64| {
+        let sum = radius.high() + low;
+        if low - (sum - radius.high()) > 0.0 { sum.next_up() } else { sum }
+    };
+    let bracket =
+        Bracket { center, low: up((radius.low() + along) - error), high: up((radius.low() + along) + error) };
+    let down = radius.low() - radius.high() * REACH_ERROR;
+    let bound = if down < 0.0 { radius.high().next_down() } else { radius.high() };
+    Some((bracket, bound))
+}
+
+/// With the center closer than this to that of a sphere, as a share of the radius, the bend of the distance is not
+/// small beside a unit in the last place.
+const NEARLY_INSIDE: f64 = 1.0 / 1_048_576.0;
+
+/// The smallest double of the bracket that encloses all spheres.
+#[cold]
+#[inline(never)]
+pub(super) fn settle(bracket: &Bracket, spheres: &[Sphere]) -> f64 {
+    let mut radius = bracket.low;
+    for sphere in spheres {
+        let reach = (sphere.center() - bracket.center).length() + sphere.radius();
+        if reach * (1.0 + 16.0 * U) <= radius {
+            continue;
+        }
+        while radius < bracket.high && !contains_exactly(bracket.center, radius, sphere) {
+            radius = radius.next_up();
+        }
+    }
+    radius
+}

@@ -1,0 +1,44 @@
+//! Farthest-first pivoting over at most 64 spheres, in registers.
+
+use fearless_simd::Simd;
+use glam::DVec3;
+
+use super::basis::Tangent;
+use super::certify::U;
+use super::lanes::Lanes;
+use crate::Sphere;
+
+/// The minimal sphere of the spheres at the places `these`, given as `lanes` too, starting from the minimal sphere of
+/// some of them: adds the sphere that sticks out farthest, until none does.
+#[inline(always)]
+pub(super) fn pivot<S: Simd, const VECTORS: usize>(
+    simd: S,
+    start: &Tangent<f64>,
+    lanes: &Lanes<S, VECTORS>,
+    these: &[usize],
+    spheres: &[Sphere],
+    origin: DVec3,
+) -> Tangent<f64> {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut tangent = *start;
+            for _ in 0..MAX_PIVOTS {
+                let (center, radius) = tangent.sphere(spheres, origin);
+                let (lane, measure) = lanes.farthest(simd, center, radius);
+                let far = these[lane.min(these.len() - 1)];
+                if measure <= radius * radius * TOUCHES || tangent.support().contains(&far) {
+                    break;
+                }
+                tangent = tangent.with(far, spheres);
+            }
+            tangent
+        },
+    )
+}
+
+/// The measure of a sphere that touches from inside is below this share of the squared radius: rounding.
+const TOUCHES: f64 = 16.0 * U;
+
+/// No set known needs more than a few dozen pivots. What is left to do after so many, the certificate sees.
+const MAX_PIVOTS: usize = 100;

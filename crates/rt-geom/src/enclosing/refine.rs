@@ -1,0 +1,135 @@
+//! The cold path: the support found in double-double arithmetic, for sets that are degenerate in doubles.
+//!
+//! Same pivoting, but a sphere counts as sticking out when it does so by more than a few units of 2⁻¹⁰⁰, and the center
+//! is known far beyond its rounding.
+
+use glam::DVec3;
+
+use super::basis::Tangent;
+use super::certify::{Bracket, U, enclose_all};
+use super::real::{Real, Wide, dot};
+use crate::Sphere;
+
+/// Returns the support, a bracket around the center rounded to doubles, and a lower bound.
+///
+/// `start` is where to begin: places of spheres, at least one.
+#[cold]
+#[inline(never)]
+pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bracket, f64) {
+    let mut tangent = Tangent::<Wide>::single(start[0]);
+    for _ in 0..MAX_PIVOTS {
+        // The farthest of a few first: the support of the fast path.
+        let Some(far) = farthest(&tangent, spheres, start.iter().copied()) else { break };
+        tangent = tangent.with(far, spheres);
+    }
+    let mut stalled = 0;
+    for _ in 0..MAX_PIVOTS {
+        let Some(far) = farthest(&tangent, spheres, 0..spheres.len()) else { break };
+        let next = tangent.with(far, spheres);
+        let radius = |tangent: &Tangent<Wide>| tangent.sphere(spheres, DVec3::ZERO).1;
+        stalled = if radius(&tangent).below(radius(&next)) { 0 } else { stalled + 1 };
+        tangent = next;
+        if stalled == 3 {
+            break;
+        }
+    }
+    let (center, _) = tangent.sphere(spheres, DVec3::ZERO);
+    let mut best = bracket(spheres, DVec3::from(center.map(Real::round)));
+    // Far from the origin doubles lie far apart, and which of the eight around the center is best shows.
+    if best.center.abs().max_element() > best.high {
+        let away = |c: Wide| if c.low() > 0.0 { c.high().next_up() } else { c.high().next_down() };
+        for corner in 1..8 {
+            let pick = |axis: usize| {
+                let c = center[axis];
+                if corner >> axis & 1 == 1 && c.low() != 0.0 { away(c) } else { c.high() }
+            };
+            let other = DVec3::new(pick(0), pick(1), pick(2));
+            let other = bracket(spheres, other);
+            if other.high < best.high {
+                best = other;
+            }
+        }
+    }
+    let bound = lower_bound(&tangent, spheres, &best);
+    (tangent, best, bound)
+}
+
+/// The place, among `these`, of the sphere that sticks out farthest; `None` if it is of the support or does not
+/// stick out by more than a rounding error.
+fn farthest(
+    tangent: &Tangent<Wide>,
+    spheres: &[Sphere],
+    these: impl Iterator<Item = usize>,
+) -> Option<usize> {
+    let (center, radius) = tangent.sphere(spheres, DVec3::ZERO);
+    let center = DVec3::from(center.map(Real::round));
+    let radius = radius.round();
+    // What lies inside by more than the rounding of the center and of the reach need not be looked at closely.
+    let spacing = center.abs().max_element() * (4.0 * U);
+    let limit = (radius - spacing) * (1.0 - 32.0 * U);
+    let mut most = Wide::new(radius * (16.0 * Wide::INSIDE));
+    let mut found = None;
+    for index in these {
+        let sphere = &spheres[index];
+        if (sphere.center() - center).length() + sphere.radius() >= limit {
+            let excess = tangent.excess(sphere, spheres);
+            if most.below(excess) {
+                (most, found) = (excess, Some(index));
+            }
+        }
+    }
+    found.filter(|index| !tangent.support().contains(index))
+}
+
+/// Brackets the radius that encloses all spheres around a center.
+fn bracket(spheres: &[Sphere], center: DVec3) -> Bracket {
+    let mut bracket = Bracket { center, low: 0.0, high: 0.0 };
+    enclose_all(&mut bracket, spheres);
+    bracket
+}
+
+/// A lower bound for the radius of any sphere that encloses `spheres`.
+fn lower_bound(tangent: &Tangent<Wide>, spheres: &[Sphere], bracket: &Bracket) -> f64 {
+    let origin = bracket.center;
+    let (center, _) = tangent.sphere(spheres, origin);
+    let away = dot(center, center).sqrt().round();
+    let mut sum = Wide::ZERO;
+    let mut total = Wide::ZERO;
+    let mut pull = [Wide::ZERO; 3];
+    let mut largest = 0.0_f64;
+    for (place, &index) in tangent.support().iter().enumerate() {
+        let sphere = &spheres[index];
+        largest = largest.max(sphere.radius());
+        let weight = tangent.weight[place];
+        if weight.below(Wide::ZERO) {
+            continue;
+        }
+        let (from, _) = tangent.sphere(spheres, sphere.center());
+        let distance = dot(from, from).sqrt();
+        let share = weight * distance;
+        sum = sum + share * (distance + Wide::new(sphere.radius()));
+        total = total + share;
+        for axis in 0..3 {
+            pull[axis] = pull[axis] + weight * from[axis];
+        }
+    }
+    let mean = sum / total;
+    // All spheres reach at most this far from the center.
+    let most = (bracket.high + away) * (1.0 + 4.0 * U);
+    let pull = dot(pull, pull).sqrt().round() / total.round() + 256.0 * U * U;
+    // Spheres that all are inside both this sphere and the minimal one hold the two centers together.
+    let mut bound = largest;
+    for _ in 0..2 {
+        let apart = ((most - bound) * (most + bound)).sqrt().min(2.0 * most) * (1.0 + 8.0 * U);
+        let loss = pull * apart * (1.0 + 8.0 * U) + most * (256.0 * U * U);
+        let value = mean - Wide::new(loss);
+        let rounded = if value.low() < 0.0 { value.high().next_down() } else { value.high() };
+        if rounded > bound {
+            bound = rounded;
+        }
+    }
+    bound
+}
+
+/// No set known needs more than a few dozen pivots. The bracket encloses all spheres in any case.
+const MAX_PIVOTS: usize = 200;

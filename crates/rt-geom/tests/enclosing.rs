@@ -1,0 +1,414 @@
+//! `enclosing_sphere` encloses, in exact arithmetic, and is minimal, by a certificate in 320-bit arithmetic, on every
+//! class of sets that is known to be awkward.
+//!
+//! The certificate is duality: for any point x and any weights w that are not negative and sum to 1, the radius of every
+//! enclosing sphere is at least the sum of `w_i (|x - c_i| + r_i)`, less `|g| |x* - x|`, where g is the sum of the
+//! weighted unit vectors from the centers to x and x* the true center. How x and w were found does not matter.
+
+use dashu::float::{FBig, round::mode::HalfEven};
+use dashu::rational::RBig;
+use glam::DVec3;
+use rt_geom::{Enclosing, Sphere, enclosing_sphere};
+
+type Number = FBig<HalfEven, 2>;
+
+/// Bits of the oracle's arithmetic.
+const PRECISION: usize = 320;
+
+fn number(x: f64) -> Number {
+    Number::try_from(x).expect("finite").with_precision(PRECISION).value()
+}
+
+fn exact(x: f64) -> RBig {
+    RBig::try_from(x).expect("finite")
+}
+
+/// A generator of even 64-bit numbers: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// In 0..1.
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 * (-53.0_f64).exp2()
+    }
+
+    /// In -1..1.
+    fn both(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        usize::try_from(self.next() % n as u64).expect("below n")
+    }
+
+    fn point(&mut self) -> DVec3 {
+        DVec3::new(self.both(), self.both(), self.both())
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let p = self.point();
+            if p.length_squared() <= 1.0 && p.length_squared() > 0.01 {
+                return p.normalize();
+            }
+        }
+    }
+
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            items.swap(i, self.below(i + 1));
+        }
+    }
+}
+
+fn sphere(center: DVec3, radius: f64) -> Sphere {
+    Sphere::new(center, radius).expect("valid")
+}
+
+/// Makes a set of a class.
+type Make = fn(&mut Random) -> Vec<Sphere>;
+
+/// The classes of sets, by name.
+const CLASSES: &[(&str, Make)] = &[
+    ("one", |random| vec![sphere(random.point(), random.unit())]),
+    ("pair", |random| some(random, 2..3, |random| sphere(random.point(), random.unit()))),
+    ("cube", |random| {
+        let largest = random.unit();
+        some(random, 2..40, |random| sphere(random.point(), largest * random.unit()))
+    }),
+    ("points", |random| some(random, 2..40, |random| sphere(random.point(), 0.0))),
+    ("many", |random| {
+        let largest = 0.1 * random.unit();
+        some(random, 65..400, |random| sphere(random.point(), largest * random.unit()))
+    }),
+    ("duplicates", |random| {
+        let few = some(random, 1..5, |random| sphere(random.point(), random.unit()));
+        some(random, 2..30, |random| few[random.below(few.len())])
+    }),
+    ("concentric", |random| {
+        let centers = [random.point(), random.point()];
+        some(random, 2..20, |random| sphere(centers[random.below(2)], random.unit()))
+    }),
+    ("one contains all", |random| {
+        let big = sphere(random.point(), 4.0);
+        let mut set = some(random, 2..20, |random| sphere(random.point(), 0.1 * random.unit()));
+        set.push(big);
+        random.shuffle(&mut set);
+        set
+    }),
+    ("tangent from inside", |random| {
+        // A big sphere, and others that touch it from inside up to rounding, here and there one that sticks out.
+        let big = sphere(random.point(), 1.0 + random.unit());
+        let mut set = some(random, 1..90, |random| {
+            let radius = big.radius() * random.unit();
+            let out = if random.below(8) == 0 { random.unit() * 1e-12 } else { 0.0 };
+            let reach = big.radius() - radius + out;
+            sphere(big.center() + reach * random.direction(), radius)
+        });
+        set.push(big);
+        random.shuffle(&mut set);
+        set
+    }),
+    ("collinear", |random| {
+        let (from, along) = (random.point(), random.direction());
+        some(random, 2..20, |random| sphere(from + 3.0 * random.both() * along, 0.3 * random.unit()))
+    }),
+    ("coplanar", |random| {
+        let (from, a, b) = (random.point(), random.direction(), random.direction());
+        let flat = random.below(2) as f64 * 0.2;
+        some(random, 2..20, |random| {
+            sphere(from + random.both() * a + random.both() * b, flat * random.unit())
+        })
+    }),
+    ("cospherical", |random| {
+        let (center, radius) = (random.point(), 0.1 * random.below(3) as f64);
+        some(random, 2..60, |random| sphere(center + random.direction(), radius))
+    }),
+    ("grid", |random| {
+        let side = 1 + random.below(4);
+        let radius = random.below(3) as f64;
+        some(random, 2..60, |random| {
+            let mut coordinate = || random.below(side + 1) as f64;
+            sphere(DVec3::new(coordinate(), coordinate(), coordinate()), radius)
+        })
+    }),
+    ("six decades of radii", |random| {
+        some(random, 2..30, |random| sphere(random.point(), 10.0_f64.powf(-6.0 * random.unit())))
+    }),
+    ("far offset", |random| {
+        let offset = 1e8 * random.point();
+        some(random, 2..30, |random| sphere(offset + random.point(), 0.3 * random.unit()))
+    }),
+    ("nearly degenerate", |random| {
+        // Almost flat, almost a line or almost a point, at every thickness.
+        let thin = 10.0_f64.powf(-16.0 * random.unit());
+        let thinner = thin * if random.below(2) == 0 { 1.0 } else { random.unit() * 1e-3 };
+        let radius = if random.below(2) == 0 { 0.0 } else { thin };
+        some(random, 3..12, |random| {
+            sphere(random.point() * DVec3::new(1.0, thin, thinner), radius * random.unit())
+        })
+    }),
+    ("nearly nested", |random| {
+        let big = sphere(random.point(), 1.0);
+        let mut set = vec![big];
+        for _ in 0..1 + random.below(6) {
+            let radius = random.unit();
+            let out = 10.0_f64.powf(-17.0 * random.unit());
+            set.push(sphere(big.center() + (1.0 - radius + out) * random.direction(), radius));
+        }
+        random.shuffle(&mut set);
+        set
+    }),
+    ("scales", |random| {
+        let scale = 10.0_f64.powf(580.0 * random.unit() - 290.0);
+        some(random, 2..20, |random| sphere(scale * random.point(), scale * random.unit()))
+    }),
+    ("mixed scales", |random| {
+        some(random, 2..10, |random| {
+            let mut wild = || random.both() * 10.0_f64.powf(570.0 * random.unit() - 290.0);
+            sphere(DVec3::new(wild(), wild(), wild()), wild().abs())
+        })
+    }),
+    ("all bits", |random| {
+        some(random, 1..8, |random| {
+            let mut any = || {
+                f64::from_bits(random.next() & !(3 << 61)) * if random.below(9) == 0 { 1e300 } else { 1.0 }
+            };
+            sphere(DVec3::new(any(), any(), any()), any().abs())
+        })
+    }),
+];
+
+fn some(
+    random: &mut Random,
+    sizes: std::ops::Range<usize>,
+    mut item: impl FnMut(&mut Random) -> Sphere,
+) -> Vec<Sphere> {
+    let size = sizes.start + random.below(sizes.len());
+    (0..size).map(|_| item(random)).collect()
+}
+
+/// Whether `outer` contains `inner`, in exact arithmetic.
+fn contains(outer: &Sphere, inner: &Sphere) -> bool {
+    let square = |x: RBig| &x * &x;
+    if outer.radius() < inner.radius() {
+        return false;
+    }
+    let room = square(exact(outer.radius()) - exact(inner.radius()));
+    let (a, b) = (outer.center(), inner.center());
+    let distance =
+        square(exact(a.x) - exact(b.x)) + square(exact(a.y) - exact(b.y)) + square(exact(a.z) - exact(b.z));
+    distance <= room
+}
+
+/// What the oracle finds: a lower bound of the radius, and the radius that the best center needs once rounded to doubles.
+struct Certificate {
+    bound: Number,
+    floor: Number,
+}
+
+type Point = [Number; 3];
+
+fn dot(a: &Point, b: &Point) -> Number {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn minus(a: &Point, b: &Point) -> Point {
+    std::array::from_fn(|i| &a[i] - &b[i])
+}
+
+fn point(p: DVec3) -> Point {
+    [number(p.x), number(p.y), number(p.z)]
+}
+
+fn root(x: Number) -> Number {
+    if x <= Number::ZERO { number(0.0) } else { dashu::base::SquareRoot::sqrt(&x) }
+}
+
+/// Solves a system of at most three linear equations; `None` if it is singular.
+fn solve(mut m: Vec<Vec<Number>>, mut b: Vec<Number>) -> Option<Vec<Number>> {
+    let n = b.len();
+    let magnitude = |x: &Number| if *x < Number::ZERO { -x.clone() } else { x.clone() };
+    for i in 0..n {
+        let pivot = (i..n).max_by(|&j, &k| magnitude(&m[j][i]).partial_cmp(&magnitude(&m[k][i])).unwrap())?;
+        m.swap(i, pivot);
+        b.swap(i, pivot);
+        if m[i][i] == Number::ZERO {
+            return None;
+        }
+        for j in i + 1..n {
+            let factor = &m[j][i] / &m[i][i];
+            let (above, below) = m.split_at_mut(j);
+            for (x, y) in below[0].iter_mut().zip(&above[i]) {
+                *x -= &factor * y;
+            }
+            let less = &factor * &b[i];
+            b[j] = &b[j] - less;
+        }
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            let less = &m[i][k] * &b[k];
+            b[i] = &b[i] - less;
+        }
+        b[i] = &b[i] / &m[i][i];
+    }
+    Some(b)
+}
+
+/// The center and the weights of the sphere that the given ones touch from inside, from the normal equations.
+fn tangent(support: &[Sphere]) -> Option<(Point, Vec<Number>)> {
+    let largest = support.iter().max_by(|a, b| a.radius().total_cmp(&b.radius()))?;
+    let mut spheres = vec![*largest];
+    spheres.extend(support.iter().filter(|&sphere| !std::ptr::eq(sphere, largest)));
+    let origin = point(spheres[0].center());
+    let p: Vec<Point> = spheres[1..].iter().map(|sphere| minus(&point(sphere.center()), &origin)).collect();
+    let s: Vec<Number> =
+        spheres[1..].iter().map(|sphere| number(sphere.radius()) - number(spheres[0].radius())).collect();
+    if p.is_empty() {
+        return Some((origin, vec![number(1.0)]));
+    }
+    let gram: Vec<Vec<Number>> = p.iter().map(|a| p.iter().map(|b| dot(a, b)).collect()).collect();
+    let half = number(0.5);
+    let h = p.iter().zip(&s).map(|(p, s)| (dot(p, p) - s * s) * &half).collect();
+    let (y0, y1) = (solve(gram.clone(), h)?, solve(gram, s)?);
+    let sum = |y: &[Number]| -> Point {
+        std::array::from_fn(|i| y.iter().zip(&p).fold(number(0.0), |sum, (y, p)| sum + y * &p[i]))
+    };
+    let (a, q) = (sum(&y0), sum(&y1));
+    let (second, first, constant) = (dot(&q, &q) - number(1.0), dot(&a, &q), dot(&a, &a));
+    let discriminant = &first * &first - &second * &constant;
+    if discriminant < Number::ZERO {
+        return None;
+    }
+    let root = root(discriminant);
+    let rho = if first > Number::ZERO { (&first + &root) / -second } else { constant / (root - first) };
+    let x: Point = std::array::from_fn(|i| &a[i] + &rho * &q[i] + &origin[i]);
+    let weights: Vec<Number> = y0.iter().zip(&y1).map(|(a, q)| a + &rho * q).collect();
+    let rest = weights.iter().fold(number(1.0), |rest, weight| rest - weight);
+    let mut all = vec![rest];
+    all.extend(weights);
+    // In the order of `spheres`: give the shares in proportion to the distances.
+    let shares = spheres
+        .iter()
+        .zip(all)
+        .map(|(sphere, weight)| {
+            let from = minus(&x, &point(sphere.center()));
+            if weight < Number::ZERO { number(0.0) } else { weight * self::root(dot(&from, &from)) }
+        })
+        .collect();
+    Some((x, shares))
+}
+
+fn certificate(spheres: &[Sphere], support: &[Sphere]) -> Option<Certificate> {
+    let (x, mut shares) = tangent(support)?;
+    let largest = support.iter().max_by(|a, b| a.radius().total_cmp(&b.radius()))?;
+    let mut ordered = vec![*largest];
+    ordered.extend(support.iter().filter(|&sphere| !std::ptr::eq(sphere, largest)));
+    let total = shares.iter().fold(number(0.0), |sum, share| sum + share);
+    if total == Number::ZERO {
+        shares = vec![number(0.0); shares.len()];
+        shares[0] = number(1.0);
+    }
+    let total = if total == Number::ZERO { number(1.0) } else { total };
+    let reach = |x: &Point, sphere: &Sphere| {
+        let from = minus(x, &point(sphere.center()));
+        root(dot(&from, &from)) + number(sphere.radius())
+    };
+    let mut mean = number(0.0);
+    let mut pull: Point = std::array::from_fn(|_| number(0.0));
+    for (sphere, share) in ordered.iter().zip(&shares) {
+        let from = minus(&x, &point(sphere.center()));
+        let distance = root(dot(&from, &from));
+        mean += share * reach(&x, sphere);
+        if distance > Number::ZERO {
+            for i in 0..3 {
+                pull[i] = &pull[i] + share * &from[i] / &distance;
+            }
+        }
+    }
+    let most = |x: &Point| {
+        spheres.iter().map(|sphere| reach(x, sphere)).max_by(|a, b| a.partial_cmp(b).unwrap()).unwrap()
+    };
+    let bound = mean / &total - number(2.0) * most(&x) * root(dot(&pull, &pull)) / total;
+    let bound = if bound > number(largest.radius()) { bound } else { number(largest.radius()) };
+    let rounded: Point = std::array::from_fn(|i| number(x[i].to_f64().value()));
+    Some(Certificate { bound, floor: most(&rounded) })
+}
+
+/// The excess of an answer over what doubles can express, relative to the radius.
+fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
+    for sphere in spheres {
+        assert!(
+            contains(&answer.sphere, sphere),
+            "{class}: {sphere:?} sticks out of {answer:?} in {spheres:?}"
+        );
+    }
+    assert!(answer.lower_bound <= answer.sphere.radius(), "{class}: {answer:?}");
+    let support: Vec<Sphere> = answer.support().iter().map(|&index| spheres[index]).collect();
+    assert!((1..=4).contains(&support.len()));
+    if answer.sphere.radius() == 0.0 {
+        return 0.0;
+    }
+    let tight = |found: &Certificate| {
+        let spacing = answer.sphere.center().abs().max_element() * f64::EPSILON;
+        &found.floor - &found.bound <= number(1e-15 * answer.sphere.radius() + 2.0 * spacing)
+    };
+    // Sets that are degenerate up to rounding may have a support of which a part alone decides.
+    let part = |mask: usize| -> Vec<Sphere> {
+        (0..support.len()).filter(|i| mask >> i & 1 == 1).map(|i| support[i]).collect()
+    };
+    let certificate = certificate(spheres, &support).filter(tight).or_else(|| {
+        (1..1_usize << support.len())
+            .filter_map(|mask| certificate(spheres, &part(mask)))
+            .max_by(|a, b| a.bound.partial_cmp(&b.bound).expect("numbers"))
+    });
+    let certificate = certificate.expect("one sphere alone has a certificate");
+    let radius = number(answer.sphere.radius());
+    // The bound that the answer states is below what every enclosing sphere needs.
+    assert!(
+        number(answer.lower_bound) <= certificate.floor,
+        "{class}: the bound of {answer:?} is too high in {spheres:?}"
+    );
+    let floor =
+        if certificate.floor > certificate.bound { certificate.floor } else { certificate.bound.clone() };
+    let tight = (&floor - &certificate.bound) / &radius;
+    let spacing = answer.sphere.center().abs().max_element() * f64::EPSILON / answer.sphere.radius();
+    let tight = tight.to_f64().value();
+    assert!(tight <= 1e-15 + 2.0 * spacing, "{class}: {answer:?} is not minimal: {tight:e} in {spheres:?}");
+    ((radius - floor) / number(answer.sphere.radius())).to_f64().value()
+}
+
+#[test]
+fn every_class_is_enclosed_exactly_and_minimally() {
+    let long = std::env::var_os("RT_LONG").is_some();
+    let cases = if long { 20_000 } else { 500 };
+    let mut all = Vec::new();
+    for (class, make) in CLASSES {
+        let mut random = Random(7);
+        let mut worst = 0.0_f64;
+        for _ in 0..cases {
+            let spheres = make(&mut random);
+            let Some(answer) = enclosing_sphere(&spheres) else {
+                assert!(spheres.iter().any(|sphere| sphere.center().length().max(sphere.radius()) > 1e307));
+                continue;
+            };
+            let excess = check(class, &spheres, &answer);
+            worst = worst.max(excess);
+            all.push(excess);
+        }
+        println!("{class}: {worst:e}");
+    }
+    all.sort_by(f64::total_cmp);
+    let (p99, worst) = (all[all.len() * 99 / 100], all[all.len() - 1]);
+    println!("p99 {p99:e}, worst {worst:e}");
+    assert!(p99 <= 2.3e-16 && worst <= 1e-14, "{p99:e} {worst:e}");
+}
