@@ -136,7 +136,7 @@ fn dot(v: &Numbers, w: &Numbers) -> Number {
     v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
 }
 
-/// The turns and `n . n`, each within `544 u² edge³ far` and `544 u² edge⁴` (and underflow).
+/// The turns and `n . n`, each within `640 u² edge³ far` and `640 u² edge⁴` (and underflow).
 fn double_double_turns(point: DVec3, triangle: &Triangle) -> ([Number; 3], Number) {
     let [a, b, c] = triangle.vertices();
     let n = cross(&difference(b, a), &difference(c, a));
@@ -148,7 +148,7 @@ fn double_double_turns(point: DVec3, triangle: &Triangle) -> ([Number; 3], Numbe
 fn double_double_signs(point: DVec3, triangle: &Triangle) -> Option<[Ordering; 3]> {
     let (turns, _) = double_double_turns(point, triangle);
     let (edge, far) = sizes(point, triangle);
-    let error = 544.0 * U * U * (edge * edge * edge) * far + UNDERFLOW;
+    let error = 640.0 * U * U * (edge * edge * edge) * far + UNDERFLOW;
     certain_signs(turns.map(Number::high), error, edge, far)
 }
 
@@ -158,7 +158,7 @@ fn double_double_weights(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> 
         return None;
     }
     let (turns, square) = double_double_turns(point, triangle);
-    let relative = 544.0 * U * U * (edge * edge * edge);
+    let relative = 640.0 * U * U * (edge * edge * edge);
     let pair = |x: Number| Pair { high: x.high(), low: x.low() };
     let divisor = Divisor::new(pair(square), relative * edge + UNDERFLOW);
     let weight = |turn: Number| divisor.divide::<false>(pair(turn), relative * far + UNDERFLOW);
@@ -208,4 +208,38 @@ fn integer_coplanar(point: DVec3, triangle: &Triangle) -> bool {
     let [a, b, c] = triangle.vertices();
     let n: [Integer; 3] = integer_cross(&integer_difference(b, a), &integer_difference(c, a));
     integer_dot(&n, &integer_difference(point, a)).sign() == Ordering::Equal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_stage_decides() {
+        let mut counts = [0; 3];
+        for k in 0..300 {
+            let s = f64::from(k) / 300.0;
+            let triangle = Triangle::new(
+                DVec3::new(0.1, 0.2, 0.3),
+                DVec3::new(1.1, -0.3, 0.7),
+                DVec3::new(0.4, 0.9, -0.2),
+            );
+            let triangle = triangle.unwrap();
+            let [a, b, c] = triangle.vertices();
+            // interior; on an edge but for rounding; a vertex
+            for point in [a + 0.3 * (b - a) + 0.5 * s * (c - a), a + s * (b - a), b] {
+                let exact = integer_signs(point, &triangle);
+                if let Some(signs) = filtered_signs(point, &triangle) {
+                    counts[0] += 1;
+                    assert_eq!(signs, exact, "{point:?}");
+                } else if let Some(signs) = double_double_signs(point, &triangle) {
+                    counts[1] += 1;
+                    assert_eq!(signs, exact, "{point:?}");
+                } else {
+                    counts[2] += 1;
+                }
+            }
+        }
+        assert!(counts[0] > 200 && counts[1] > 200 && counts[2] >= 300, "{counts:?}");
+    }
 }

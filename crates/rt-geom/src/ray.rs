@@ -56,8 +56,9 @@ pub(crate) struct PreparedRay<'a> {
     pub(crate) end: f64,
     /// The largest component of the direction in magnitude.
     pub(crate) reach: f64,
-    /// `direction . direction` and its reciprocal, rounded.
+    /// `direction . direction`, rounded; twice that; and its reciprocal.
     pub(crate) square: f64,
+    pub(crate) twice_square: f64,
     pub(crate) inverse_square: f64,
 }
 
@@ -68,7 +69,15 @@ impl<'a> PreparedRay<'a> {
         let reach = max_abs(ray.direction);
         let reach = if (1.0 / LONGEST..=LONGEST).contains(&reach) { reach } else { f64::NAN };
         let square = if reach.is_nan() { reach } else { ray.direction.length_squared() };
-        Self { ray, start: within.start, end: within.end, reach, square, inverse_square: 1.0 / square }
+        Self {
+            ray,
+            start: within.start,
+            end: within.end,
+            reach,
+            square,
+            twice_square: 2.0 * square,
+            inverse_square: 1.0 / square,
+        }
     }
 
     /// The range.

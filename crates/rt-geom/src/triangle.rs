@@ -191,7 +191,7 @@ impl Triangle {
 
     /// Returns the unit normal, on the side from which the vertices turn counterclockwise; `None` if degenerate.
     ///
-    /// Within `4.1 * 2^-53` of the exact one in Euclidean length, slivers and all scales included (proved in
+    /// Within `4.6 * 2^-53` of the exact one in Euclidean length, slivers and all scales included (proved in
     /// `docs/numerics.md`, section 6).
     pub fn normal(&self) -> Option<DVec3> {
         let n = exact::scaled_normal(self)?;

@@ -354,7 +354,7 @@ fn normals_and_hit_points_keep_their_bounds() {
         let normal = sphere.normal(point);
         // |n| within the bound of 1, and n parallel to w: |n x w|² <= (bound |w|)²
         let (n, w) = (vector(normal), minus(&vector(point), &vector(center)));
-        let bound = exact(4.1 * U);
+        let bound = exact(4.6 * U);
         let x = cross(&n, &w);
         let limit = &(&bound * &bound) * &dot(&w, &w);
         assert!(dot(&x, &x).cmp(&limit) != Ordering::Greater, "{sphere:?} {point:?} gives {normal:?}");

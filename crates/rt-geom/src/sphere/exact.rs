@@ -12,8 +12,8 @@ use super::{Side, Sphere, U, UNDERFLOW, UNDERFLOW_T};
 use crate::Ray;
 use crate::ray::{holds, larger, max_abs};
 
-/// Up to here in magnitude the coordinates relative to the center must be for the stages in double-double: 2^400.
-const FARTHEST: f64 = f64::from_bits((1023 + 400) << 52);
+/// Up to here in magnitude the coordinates relative to the center must be for the stages in double-double: `2^300`.
+const FARTHEST: f64 = f64::from_bits((1023 + 300) << 52);
 
 fma_dispatch! {
     /// Returns the correctly rounded root where the line enters, from an approximation, or `None` if it takes more.
@@ -176,10 +176,10 @@ fn double_double_roots(sphere: &Sphere, ray: &Ray) -> Option<Roots> {
     let b = dot(w, d);
     let root = delta.sqrt();
     let q = if b.high() < 0.0 { root - b } else { root + b };
-    let q_error = 26.0 * U * U * product + 10.0 * U * U * q.high() + error / root.high();
+    let q_error = 32.0 * U * U * product + 12.0 * U * U * q.high() + error / root.high();
     let w_square = dot(w, w);
     let c = w_square - radius_square;
-    let c_error = 22.0 * U * U * (w_square.high() + radius_square.high()) + UNDERFLOW;
+    let c_error = 32.0 * U * U * (w_square.high() + radius_square.high()) + UNDERFLOW;
     let (small, large) = (c / q, q / a);
     let small_size = small.high().abs();
     let small_error =
@@ -248,4 +248,153 @@ fn difference<const LIMBS: usize>(p: DVec3, q: DVec3) -> [Dyadic<LIMBS>; 3] {
 
 fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> Dyadic<LIMBS> {
     &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{First, Line};
+    use super::*;
+    use crate::ray::PreparedRay;
+
+    /// Numbers in -1..1 from a fixed seed (splitmix64).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    /// How many cases each stage has decided.
+    #[derive(Debug, Default)]
+    struct Stages {
+        filter: usize,
+        newton: usize,
+        double_double: usize,
+        integers: usize,
+    }
+
+    impl Stages {
+        fn count(&mut self, sphere: &Sphere, ray: &Ray) {
+            let prepared = PreparedRay::new(ray, 0.0..f64::INFINITY);
+            let newton = match sphere.line(&prepared) {
+                Line::Misses => {
+                    self.filter += 1;
+                    return;
+                }
+                Line::Crosses(crossing) => match crossing.first(&prepared) {
+                    First::None => {
+                        self.filter += 1;
+                        return;
+                    }
+                    First::Near => near_root(sphere, ray, prepared.square, prepared.reach, crossing.near()),
+                    First::Far => far_root(sphere, ray, prepared.square, prepared.reach, crossing.far()),
+                    First::Unsure => None,
+                },
+                Line::Unsure => None,
+            };
+            // The stages agree, where an earlier one dares to decide.
+            let integers = integer_roots(sphere, ray);
+            if let Some(t) = newton {
+                self.newton += 1;
+                let Roots::Two(near, far) = integers else { panic!("{sphere:?} {ray:?}") };
+                assert!(t == near || t == far, "{sphere:?} {ray:?}");
+            } else if let Some(roots) = double_double_roots(sphere, ray) {
+                self.double_double += 1;
+                assert_eq!(roots, integers, "{sphere:?} {ray:?}");
+            } else {
+                self.integers += 1;
+            }
+        }
+    }
+
+    #[test]
+    fn benign_rays_never_leave_the_first_stages() {
+        let (mut stages, state) = (Stages::default(), &mut 1);
+        for _ in 0..4096 {
+            let center = 10.0 * vector(state);
+            let sphere = Sphere::new(center, 3.0 * random(state).abs()).unwrap();
+            let origin = 10.0 * vector(state);
+            let ray = Ray::new(origin, center + 1.5 * sphere.radius * vector(state) - origin).unwrap();
+            stages.count(&sphere, &ray);
+        }
+        assert!(stages.filter > 1000 && stages.newton > 1000, "{stages:?}");
+        assert_eq!(stages.double_double + stages.integers, 0, "{stages:?}");
+    }
+
+    #[test]
+    fn every_stage_decides_hard_cases() {
+        let (mut stages, state) = (Stages::default(), &mut 2);
+        for i in 0..4096 {
+            // grazing within some rounding errors, from more and more radii away
+            let radius = 2f64.powi(-(i % 30));
+            let (origin, direction) = (vector(state), vector(state));
+            let side = direction.cross(vector(state)).normalize();
+            let off = radius * (1.0 + 2f64.powi(-(20 + i % 40)) * random(state));
+            let center = origin + direction + off * side;
+            stages.count(&Sphere::new(center, radius).unwrap(), &Ray::new(origin, direction).unwrap());
+        }
+        // exactly tangent
+        for i in 0..64 {
+            let sphere = Sphere::new(DVec3::ZERO, f64::from(i)).unwrap();
+            stages.count(&sphere, &Ray::new(DVec3::new(-100.0, f64::from(i), 0.0), DVec3::X).unwrap());
+        }
+        let all = [stages.filter, stages.newton, stages.double_double, stages.integers];
+        assert!(all.iter().all(|&n| n > 60), "{stages:?}");
+    }
+
+    #[test]
+    fn fused_and_plain_arithmetic_give_the_same_root() {
+        let state = &mut 3;
+        let mut decided = 0;
+        for i in 0..4096 {
+            let (origin, center) = (10.0 * vector(state), vector(state));
+            let sphere = Sphere::new(center, 2f64.powi(-(i % 20))).unwrap();
+            let ray = Ray::new(origin, center + 0.5 * sphere.radius * vector(state) - origin).unwrap();
+            let prepared = PreparedRay::new(&ray, 0.0..f64::INFINITY);
+            let Line::Crosses(crossing) = sphere.line(&prepared) else { continue };
+            let (a, reach, t) = (prepared.square, prepared.reach, crossing.near());
+            let plain = near_kernel::<false>(&sphere, &ray, a, reach, t);
+            assert_eq!(plain, near_kernel::<true>(&sphere, &ray, a, reach, t), "{sphere:?} {ray:?}");
+            decided += usize::from(plain.is_some());
+        }
+        assert!(decided > 2000, "{decided}");
+    }
+
+    #[test]
+    fn the_side_is_decided_by_every_stage() {
+        let state = &mut 4;
+        let mut counts = [0; 3];
+        for i in 0..4096 {
+            let center = vector(state);
+            let offset = vector(state).normalize() * (1.0 + f64::from(i % 8) * 1e-16);
+            let (sphere, point) = (Sphere::new(center, 1.0).unwrap(), center + offset);
+            let w = point - center;
+            let stage = if (w.length_squared() - 1.0).abs() > 14.0 * U {
+                0
+            } else {
+                match double_double_side(&sphere, point) {
+                    Some(sign) => {
+                        assert_eq!(sign, integer_side(&sphere, point));
+                        1
+                    }
+                    None => 2,
+                }
+            };
+            counts[stage] += 1;
+        }
+        // exactly on the surface
+        for k in 0..64 {
+            let size = f64::from(k);
+            let sphere = Sphere::new(DVec3::ZERO, 3.0 * size).unwrap();
+            let point = size * DVec3::new(1.0, 2.0, -2.0);
+            assert_eq!(double_double_side(&sphere, point), None);
+            assert_eq!(integer_side(&sphere, point), Ordering::Equal);
+            counts[2] += 1;
+        }
+        assert!(counts[1] > 100 && counts[2] >= 64, "{counts:?}");
+    }
 }

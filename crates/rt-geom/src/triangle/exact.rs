@@ -402,3 +402,117 @@ pub(crate) fn integer_dot<const LIMBS: usize>(
 ) -> Dyadic<LIMBS> {
     &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::PreparedRay;
+
+    /// Numbers in -1..1 from a fixed seed (splitmix64).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    /// A triangle and a ray aimed at the place with these weights of the second and third vertex.
+    fn case(state: &mut u64, v: f64, w: f64) -> (Triangle, Ray) {
+        let [a, b, c] = [vector(state), vector(state), vector(state)];
+        let origin = 5.0 * vector(state);
+        let direction = a + v * (b - a) + w * (c - a) - origin;
+        (Triangle::new(a, b, c).unwrap(), Ray::new(origin, direction).unwrap())
+    }
+
+    /// How many verdicts each stage has reached, and how many `t` and weights.
+    #[derive(Debug, Default)]
+    struct Stages {
+        filter: usize,
+        double_double: usize,
+        integers: usize,
+        rounded: usize,
+        not_rounded: usize,
+    }
+
+    impl Stages {
+        fn count(&mut self, triangle: &Triangle, ray: &Ray) {
+            let prepared = PreparedRay::new(ray, 0.0..f64::INFINITY);
+            let exact = Volumes::new(triangle, ray);
+            if let Some(order) = triangle.line_beside(&prepared) {
+                self.filter += 1;
+                let expected = verdict(exact.signs()).unwrap();
+                assert_eq!(order == Ordering::Less, expected == Verdict::Miss, "{triangle:?} {ray:?}");
+                if order == Ordering::Less {
+                    return;
+                }
+                assert_eq!(expected, Verdict::Interior, "{triangle:?} {ray:?}");
+                match (rounded_t(triangle, ray), rounded_weights(triangle, ray), rounded_hit(triangle, ray)) {
+                    (Some(t), Some(weights), Some(both)) => {
+                        self.rounded += 1;
+                        assert_eq!(t, integer_t(triangle, ray), "{triangle:?} {ray:?}");
+                        assert_eq!(Some(weights), integer_weights(triangle, ray), "{triangle:?} {ray:?}");
+                        assert_eq!(both, (t, weights), "{triangle:?} {ray:?}");
+                    }
+                    _ => self.not_rounded += 1,
+                }
+            } else if let Some(signs) = double_double_signs(triangle, ray) {
+                self.double_double += 1;
+                assert_eq!(signs, exact.signs(), "{triangle:?} {ray:?}");
+            } else {
+                self.integers += 1;
+            }
+        }
+    }
+
+    #[test]
+    fn benign_rays_never_leave_the_first_stages() {
+        let (mut stages, state) = (Stages::default(), &mut 1);
+        for _ in 0..4096 {
+            let (v, w) = (0.5 * random(state) + 0.4, 0.5 * random(state) + 0.4);
+            let (triangle, ray) = case(state, v, w);
+            stages.count(&triangle, &ray);
+        }
+        assert_eq!((stages.filter, stages.not_rounded), (4096, 0), "{stages:?}");
+        assert!(stages.rounded > 1000, "{stages:?}");
+    }
+
+    #[test]
+    fn every_stage_decides_hard_cases() {
+        let (mut stages, state) = (Stages::default(), &mut 2);
+        for i in 0..4096 {
+            // within less and less of an edge
+            let (v, w) = (random(state), 2f64.powi(-(i % 60)) * random(state));
+            let (triangle, ray) = case(state, v, w);
+            stages.count(&triangle, &ray);
+        }
+        for k in 0..64 {
+            // exactly through an edge
+            let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
+            let origin = DVec3::new(f64::from(k) / 64.0, 0.0, 1.0);
+            stages.count(&triangle, &Ray::new(origin, DVec3::NEG_Z).unwrap());
+            // t is halfway between two doubles
+            let origin = DVec3::new(0.25, 0.25, 1.0 + f64::from(k) * f64::EPSILON);
+            let plane = -(f64::EPSILON / 2.0);
+            let [a, b, c] = triangle.vertices.map(|vertex| vertex + DVec3::new(0.0, 0.0, plane));
+            stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, DVec3::NEG_Z).unwrap());
+        }
+        let all = [stages.filter, stages.double_double, stages.integers, stages.rounded, stages.not_rounded];
+        assert!(all.iter().all(|&n| n >= 60), "{stages:?}");
+    }
+
+    #[test]
+    fn fused_and_plain_arithmetic_give_the_same_values() {
+        let state = &mut 3;
+        for _ in 0..2000 {
+            let (v, w) = (0.5 * random(state).abs(), 0.5 * random(state).abs());
+            let (triangle, ray) = case(state, v, w);
+            assert_eq!(t_kernel::<false>(&triangle, &ray), t_kernel::<true>(&triangle, &ray));
+            assert_eq!(weights_kernel::<false>(&triangle, &ray), weights_kernel::<true>(&triangle, &ray));
+            assert_eq!(hit_kernel::<false>(&triangle, &ray), hit_kernel::<true>(&triangle, &ray));
+        }
+    }
+}

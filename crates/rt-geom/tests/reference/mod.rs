@@ -3,6 +3,8 @@
 
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod triangle;
+
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Range, Sub};
 
