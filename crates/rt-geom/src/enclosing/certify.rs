@@ -6,7 +6,7 @@
 
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
-use rt_math::exact::{DoubleDouble, Dyadic};
+use rt_math::exact::{self as scalar, Dyadic, two_prod};
 
 use super::basis::{Tangent, offset};
 use super::real::{Wide, dot};
@@ -58,6 +58,22 @@ fn two_square<S: Simd>(simd: S, a: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
     let high = shifted - (shifted - a);
     let low = a - high;
     (square, low * low - ((square - high * high) - (high + high) * low))
+}
+
+/// `a b` and its rounding error, exactly, lane by lane.
+#[inline(always)]
+fn two_product<S: Simd>(simd: S, a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
+    let product = a * b;
+    if has_fma(simd) {
+        return (product, a.mul_sub_precise(b, product));
+    }
+    let split = |x: f64x4<S>| {
+        let shifted = x * 134_217_729.0;
+        let high = shifted - (shifted - x);
+        (high, x - high)
+    };
+    let ((ah, al), (bh, bl)) = (split(a), split(b));
+    (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
 }
 
 /// How far four spheres reach from a center.
@@ -300,42 +316,68 @@ pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> b
 ///
 /// `None` if one lies inside the other or nearly so.
 #[inline(always)]
-pub(super) fn pair<const FMA: bool>(a: &Sphere, b: &Sphere) -> Option<(Bracket, f64)> {
-    type Number<const FMA: bool> = DoubleDouble<FMA>;
-    let (ca, cb) = (a.center(), b.center());
-    let (ra, rb) = (a.radius(), b.radius());
-    let px = Number::<FMA>::difference(cb.x, ca.x);
-    let py = Number::<FMA>::difference(cb.y, ca.y);
-    let pz = Number::<FMA>::difference(cb.z, ca.z);
-    let square = px * px + py * py + pz * pz;
-    let length = square.sqrt();
-    let s = Number::<FMA>::difference(rb, ra);
-    // The share of the way from a to b: (length + s) / 2 length.
-    let share = ((length + s) / length).scale(0.5);
-    let reach_a = length.high() * share.high();
-    let reach_b = length.high() - reach_a;
-    let nearest = reach_a.min(reach_b);
-    let radius = (length + Number::<FMA>::sum(ra, rb)).scale(0.5);
-    let apart = nearest > radius.high() * NEARLY_INSIDE;
-    if !apart {
+pub(super) fn pair<S: Simd>(simd: S, a: &Sphere, b: &Sphere) -> Option<(Bracket, f64)> {
+    if has_fma(simd) { pair_with::<S, true>(simd, a, b) } else { pair_with::<S, false>(simd, a, b) }
+}
+
+#[inline(always)]
+fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Option<(Bracket, f64)> {
+    // The differences of the coordinates and, in the last lane, of the radii: exactly high + low.
+    let row = |s: &Sphere| [s.center().x, s.center().y, s.center().z, s.radius()];
+    let from = f64x4::simd_from(simd, row(a));
+    let (p, p_low) = two_sum(f64x4::simd_from(simd, row(b)), -from);
+    let (square, error) = two_square(simd, p);
+    let error = error + (p + p) * p_low;
+    // Their distance, length + length_low.
+    let (sum, sum_error) = scalar::two_sum(square[0], square[1]);
+    let (sum, rest) = scalar::two_sum(sum, square[2]);
+    let tail = (error[0] + error[1]) + (error[2] + (sum_error + rest));
+    let length = sum.sqrt();
+    let inverse = 1.0 / length;
+    let (again, again_error) = two_prod::<FMA>(length, length);
+    let length_low = (((sum - again) - again_error) + tail) * (0.5 * inverse);
+    // The share of the way from a to b, (distance + difference of the radii) / 2 distance, as share + share_low.
+    let share = 0.5 + (0.5 * p[3]) * inverse;
+    let (half, half_low) = scalar::two_sum(0.5 * length, 0.5 * p[3]);
+    let (part, part_low) = two_prod::<FMA>(share, length);
+    let left = (half - part) + (half_low - part_low) + (0.5 * p_low[3] + length_low * (0.5 - share));
+    let share_low = left * inverse;
+    let nearest = length * share.min(1.0 - share);
+    // The radius is half of distance + radii.
+    let (radii, radii_low) = scalar::two_sum(a.radius(), b.radius());
+    let (twice, twice_low) = scalar::two_sum(length, radii);
+    let radius = 0.5 * twice;
+    let radius_low = 0.5 * (twice_low + (radii_low + length_low));
+    let apart = nearest > radius * NEARLY_INSIDE;
+    if !apart || !super::ORDINARY.contains(&twice) {
         return None;
     }
-    let at = |p: Number<FMA>, c: f64| p * share + Number::<FMA>::new(c);
-    let (x, y, z) = (at(px, ca.x), at(py, ca.y), at(pz, ca.z));
-    let center = DVec3::new(x.high(), y.high(), z.high());
-    // The rounded center is off by e: |v + e| is between |v| + u.e and that plus |e|² / 2|v|.
-    let e = -DVec3::new(x.low(), y.low(), z.low());
-    let along = (e.x * px.high() + e.y * py.high() + e.z * pz.high()).abs() / length.high();
-    let bend = (e.x * e.x + e.y * e.y + e.z * e.z) / nearest;
-    let error = radius.high() * REACH_ERROR + bend + 16.0 * U * (e.x.abs() + e.y.abs() + e.z.abs());
+    // The center, and by how much rounding it to doubles moved it.
+    let (way, way_low) = two_product(simd, p, f64x4::splat(simd, share));
+    let way_low = way_low + (p * share_low + p_low * share);
+    let (c, c_low) = two_sum(from, way);
+    let c_low = c_low + way_low;
+    let center = c + c_low;
+    let e = (center - c) - c_low;
+    // |v + e| is between |v| + u.e and that plus |e|² / 2|v|, where u is the direction from one to the other.
+    let along = e * p;
+    let along = ((along[0] + along[1]) + along[2]).abs() * inverse;
+    let away = (e[0].abs() + e[1].abs()) + e[2].abs();
+    let size = (center[0].abs() + center[1].abs()) + center[2].abs();
+    let bend = away * away / nearest;
+    let error = radius * REACH_ERROR + bend + 16.0 * U * (away + U * size);
     let up = |low: f64| {
-        let sum = radius.high() + low;
-        if low - (sum - radius.high()) > 0.0 { sum.next_up() } else { sum }
+        let sum = radius + low;
+        if low - (sum - radius) > 0.0 { sum.next_up() } else { sum }
     };
-    let bracket =
-        Bracket { center, low: up((radius.low() + along) - error), high: up((radius.low() + along) + error) };
-    let down = radius.low() - radius.high() * REACH_ERROR;
-    let bound = if down < 0.0 { radius.high().next_down() } else { radius.high() };
+    let bracket = Bracket {
+        center: DVec3::new(center[0], center[1], center[2]),
+        low: up((radius_low + along) - error),
+        high: up((radius_low + along) + error),
+    };
+    let down = radius_low - radius * REACH_ERROR;
+    let sum = radius + down;
+    let bound = if down - (sum - radius) < 0.0 { sum.next_down() } else { sum };
     Some((bracket, bound))
 }
 

@@ -26,7 +26,7 @@ pub(super) fn pivot<S: Simd, const VECTORS: usize>(
             for _ in 0..MAX_PIVOTS {
                 let (center, radius) = tangent.sphere(spheres, origin);
                 let (lane, measure) = lanes.farthest(simd, center, radius);
-                let far = these[lane.min(these.len() - 1)];
+                let far = these[lane];
                 if measure <= radius * radius * TOUCHES || tangent.support().contains(&far) {
                     break;
                 }

@@ -13,6 +13,7 @@ pub(super) const LANES: usize = 8;
 pub(super) struct Lanes<S: Simd, const VECTORS: usize> {
     vectors: [[f64x8<S>; 4]; VECTORS],
     used: usize,
+    count: usize,
 }
 
 impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
@@ -27,7 +28,7 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
         let used = count.div_ceil(LANES).min(VECTORS);
         let mut vectors = [[f64x8::splat(simd, 0.0); 4]; VECTORS];
         let mut rest = spheres.clone();
-        let Some(first) = spheres.clone().next() else { return Self { vectors, used: 0 } };
+        let Some(first) = spheres.clone().next() else { return Self { vectors, used: 0, count } };
         for vector in &mut vectors[..used] {
             let mut at = [first; LANES];
             for at in &mut at {
@@ -41,7 +42,7 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
                 f64x8::simd_from(simd, at.map(Sphere::radius)),
             ];
         }
-        Self { vectors, used }
+        Self { vectors, used, count }
     }
 
     /// The largest reach from the origin.
@@ -58,7 +59,7 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
     /// it sticks out.
     ///
     /// The measure is `d² - (radius - r)²`: the excess times about twice the radius, without a root. Its six lowest bits
-    /// carry the index, so that one maximum finds both.
+    /// carry the index, so that one maximum finds both. (An unused lane stands for the first sphere.)
     #[inline(always)]
     pub(super) fn farthest(&self, simd: S, center: [f64; 3], radius: f64) -> (usize, f64) {
         let mut most = f64x8::splat(simd, f64::NEG_INFINITY);
@@ -73,7 +74,8 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
             lane += LANES as u64;
         }
         let most = most.reduce_max();
-        ((most.to_bits() & 63) as usize, most)
+        let lane = (most.to_bits() & 63) as usize;
+        (if lane < self.count { lane } else { 0 }, most)
     }
 
     /// Returns which spheres reach farther than `limit` from `center`, as bits.

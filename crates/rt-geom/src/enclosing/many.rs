@@ -79,8 +79,7 @@ impl Blocks {
     ) {
         self.go(center);
         out.clear();
-        // What the way and the reaches lose to rounding.
-        let skip = (limit - self.way) * (1.0 - 64.0 * U);
+        let skip = self.skip(limit);
         for (block, (stored, chunk)) in self.reach.iter_mut().zip(spheres.chunks(BLOCK)).enumerate() {
             if *stored > skip {
                 let reach = farthest(chunk, origin, center);
@@ -90,6 +89,11 @@ impl Blocks {
                 }
             }
         }
+    }
+
+    /// The stored number up to which a block has nothing beyond `limit`, rounding included.
+    fn skip(&self, limit: f64) -> f64 {
+        limit - self.way - 128.0 * U * (limit + self.way)
     }
 
     /// Moves the center.
@@ -108,7 +112,7 @@ impl Blocks {
         mut visit: impl FnMut(usize),
     ) {
         self.go(center);
-        let skip = (limit - self.way) * (1.0 - 64.0 * U);
+        let skip = self.skip(limit);
         for (block, (stored, chunk)) in self.reach.iter().zip(spheres.chunks(BLOCK)).enumerate() {
             if *stored > skip {
                 for (i, sphere) in chunk.iter().enumerate() {

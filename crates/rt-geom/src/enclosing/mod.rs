@@ -121,13 +121,7 @@ fn enclosing<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
 /// Two spheres, in closed form.
 #[inline(always)]
 fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<Enclosing> {
-    let reach = (a.center() - b.center()).length() + a.radius() + b.radius();
-    if !ORDINARY.contains(&reach) {
-        return extreme(spheres);
-    }
-    let pair =
-        if certify::has_fma(simd) { certify::pair::<true>(a, b) } else { certify::pair::<false>(a, b) };
-    match pair {
+    match certify::pair(simd, a, b) {
         Some((bracket, bound)) => finish(spheres, &bracket, bound, &[0, 1]),
         None => simd.vectorize(
             #[inline(always)]
@@ -141,10 +135,13 @@ fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<E
 fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
     let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
-    if !ORDINARY.contains(&lanes.reach(simd)) {
+    let reach = lanes.reach(simd);
+    if !ORDINARY.contains(&reach) {
         return extreme(spheres);
     }
-    let tangent = few::pivot(simd, &Tangent::single(0), &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
+    let far = lanes.farthest(simd, [0.0; 3], reach).0;
+    let tangent =
+        few::pivot(simd, &Tangent::single(far), &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
     let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
     // Who else is close enough to the boundary to stick out?
     let (center, limit) = near(&tangent, &bracket, spheres, origin);

@@ -67,10 +67,10 @@ impl Builder<'_> {
     #[inline(always)]
     fn node<S: Simd>(&mut self, simd: S, node: &Node) -> Done {
         let range = node.leaves.clone();
-        if let [a, b] = &self.leaves[range.clone()] {
-            if let Some(sphere) = pair(a, b) {
-                return done(Some(sphere), &[range.start, range.start + 1]);
-            }
+        if let [a, b] = &self.leaves[range.clone()]
+            && let Some(sphere) = pair(a, b)
+        {
+            return done(Some(sphere), &[range.start, range.start + 1]);
         }
         let mut these = [range.start; MOST];
         let mut count = 0;
@@ -123,10 +123,12 @@ impl Builder<'_> {
     fn solve<S: Simd, const VECTORS: usize>(&self, simd: S, these: &[usize]) -> Option<Tangent<f64>> {
         let origin = self.leaves[these[0]].center();
         let lanes = Lanes::<S, VECTORS>::new(simd, these.iter().map(|&index| &self.leaves[index]), origin);
-        if !ORDINARY.contains(&lanes.reach(simd)) {
+        let reach = lanes.reach(simd);
+        if !ORDINARY.contains(&reach) {
             return None;
         }
-        Some(pivot(simd, &Tangent::single(these[0]), &lanes, these, self.leaves, origin))
+        let far = lanes.farthest(simd, [0.0; 3], reach).0;
+        Some(pivot(simd, &Tangent::single(these[far]), &lanes, these, self.leaves, origin))
     }
 
     /// The center, rounded, and the largest reach of the support from it, if the support is balanced: then the sphere is
@@ -175,10 +177,10 @@ impl Builder<'_> {
         self.stack.extend(node.children.clone());
         while let Some(index) = self.stack.pop() {
             let below = &self.nodes[index];
-            if let Some(sphere) = self.done[index].sphere {
-                if reach(&sphere) <= best.1 {
-                    continue;
-                }
+            if let Some(sphere) = self.done[index].sphere
+                && reach(&sphere) <= best.1
+            {
+                continue;
             }
             if below.children.is_empty() || below.leaves.len() <= LANES {
                 look(self.leaves, below.leaves.clone(), &mut best);
