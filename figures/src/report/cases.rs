@@ -14,6 +14,10 @@ pub(super) struct Class<const M: usize> {
 pub(super) struct Random(u64);
 
 impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -40,7 +44,7 @@ impl Random {
         self.sign() * self.within(1.0, 10.0) * size(self.within(low, high))
     }
 
-    fn vector(&mut self, size: f64) -> [f64; 3] {
+    pub(super) fn vector(&mut self, size: f64) -> [f64; 3] {
         [0; 3].map(|_| self.within(-size, size))
     }
 
@@ -81,6 +85,10 @@ fn plus(a: [f64; 3], b: [f64; 3], s: f64) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
+fn combination(a: [f64; 3], s: f64, b: [f64; 3], t: f64) -> [f64; 3] {
+    plus(a.map(|x| x * s), b, t)
+}
+
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
@@ -100,7 +108,7 @@ fn class<const M: usize>(
 ) -> Class<M> {
     let seed =
         name.bytes().fold(M as u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let finite = |case: &[f64; M]| case.iter().all(|x| x.is_finite());
     let cases = std::iter::repeat_with(|| make(&mut random)).filter(|case| finite(case) && valid(case));
     Class { name, cases: cases.take(count).collect() }
@@ -214,7 +222,7 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
         }),
         class("plane through the origin", |r| {
             let (p, q) = (r.whole_vector(99), r.whole_vector(99));
-            let [a, b, c] = [0; 3].map(|_| plus(p.map(|x| x * r.whole(-9, 9)), q, r.whole(-9, 9)));
+            let [a, b, c] = [0; 3].map(|_| combination(p, r.whole(-9, 9), q, r.whole(-9, 9)));
             let target = plus(plus(a, plus(b, a, -1.0), 0.25), plus(c, a, -1.0), 0.25);
             let d = r.whole_vector(99);
             join(&[&plus(target, d, -2.0), &d, &a, &b, &c])
@@ -294,14 +302,14 @@ pub(super) fn pseudo_inverse(count: usize) -> Vec<Class<9>> {
         }),
         class("ill-conditioned", |r| {
             let (a, b) = (r.vector(1.0), r.vector(1.0));
-            let c = plus(a.map(|x| x * r.within(-1.0, 1.0)), b, r.within(-1.0, 1.0));
+            let c = combination(a, r.within(-1.0, 1.0), b, r.within(-1.0, 1.0));
             let c = plus(c, r.unit(), size(r.within(-14.0, -4.0)));
             join(&[&a, &b, &c])
         }),
         class("rank 2", |r| {
             let (a, b) = (r.whole_vector(99), r.whole_vector(99));
             let (s, t) = (r.whole(-9, 9), r.whole(-9, 9));
-            join(&[&a, &b, &plus(a.map(|x| x * s), b, t)])
+            join(&[&a, &b, &combination(a, s, b, t)])
         }),
         class("rank 1", |r| {
             let (a, s) = (r.whole_vector(99), r.whole_vector(9));
@@ -309,8 +317,7 @@ pub(super) fn pseudo_inverse(count: usize) -> Vec<Class<9>> {
         }),
         class("vertices near a plane through the origin", |r| {
             let (p, q) = (r.whole_vector(99), r.whole_vector(99));
-            let rows =
-                [0; 3].map(|_| plus(p.map(|x| x * r.whole(-9, 9)), q, r.whole(-9, 9)).map(|x| r.near(x)));
+            let rows = [0; 3].map(|_| combination(p, r.whole(-9, 9), q, r.whole(-9, 9)).map(|x| r.near(x)));
             std::array::from_fn(|i| rows[i % 3][i / 3])
         }),
         class("whole range", |r| {

@@ -33,6 +33,16 @@ pub(super) fn differences(stored: &Report, new: &Report, factor: Option<f64>) ->
             }
         }
     }
+    for (was, is) in stored.trees.iter().zip(&new.trees) {
+        if (&was.method, was.spheres, was.different, was.tests)
+            != (&is.method, is.spheres, is.different, is.tests)
+        {
+            differences.push(format!(
+                "{} in {} spheres: {} other hits, now {}",
+                was.method, was.spheres, was.different, is.different
+            ));
+        }
+    }
     differences
 }
 

@@ -3,6 +3,7 @@
 use super::Report;
 use super::measure::{Cell, Errors, Kernel, Measured, NAN_DISTANCE};
 use super::plot::{escape, percent, work_precision};
+use super::trees;
 
 /// A piece of text.
 pub(super) enum Block {
@@ -24,6 +25,9 @@ pub(super) fn blocks(report: &Report) -> Vec<Block> {
          methods taking turns on the same cases; those of our kernels include building checked shapes."
             .to_owned(),
     ));
+    blocks.push(Block::Heading("what the trees cost and save".to_owned()));
+    blocks.push(Block::Plot("trees.svg".to_owned(), trees::plot(&report.trees)));
+    blocks.push(growth(report));
     for kernel in &report.kernels {
         blocks.push(Block::Heading(kernel.name.clone()));
         let file = format!("{}.svg", kernel.name.replace(' ', "-"));
@@ -83,6 +87,33 @@ fn which(report: &Report) -> Block {
             fastest(&|method| sound(&method.total(), 0.0)),
             fastest(&|method| sound(&method.total(), 2.0)),
             fastest(&|method| method.classes[0].errors.wrong_verdicts == 0),
+        ]);
+    }
+    Block::Table(rows)
+}
+
+fn growth(report: &Report) -> Block {
+    let head = [
+        "spheres",
+        "method",
+        "build, ms",
+        "ns a ray",
+        "faster than the plain loop",
+        "sphere tests a ray",
+        "other hits",
+    ];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for row in &report.trees {
+        let plain =
+            report.trees.iter().find(|other| other.spheres == row.spheres).map_or(f64::NAN, |r| r.median);
+        rows.push(vec![
+            row.spheres.to_string(),
+            row.method.clone(),
+            format!("{:.2}", 1e3 * row.build),
+            format!("{:.0}", row.median),
+            format!("{:.1}", plain / row.median),
+            row.tests.map_or("–".to_owned(), |tests| format!("{tests:.1}")),
+            format!("{} of {}", row.different, row.compared),
         ]);
     }
     Block::Table(rows)

@@ -10,6 +10,7 @@ mod measure;
 mod methods;
 mod plot;
 mod reference;
+mod trees;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::cli::Failure;
 use measure::{Effort, Kernel};
 use methods::Answer;
+use trees::Growth;
 
 /// What `figures report` is asked for.
 #[derive(clap::Args, Clone, Debug)]
@@ -47,6 +49,7 @@ struct Report {
     machine: Machine,
     effort: Effort,
     kernels: Vec<Kernel>,
+    trees: Vec<Growth>,
 }
 
 /// Where and when a report was measured.
@@ -149,13 +152,14 @@ fn measure(effort: Effort) -> Report {
         measure::kernel(
             ["enclosing sphere", "all inside", "radius"],
             &methods::enclosing(),
-            &cases::enclosing(n.div_ceil(8)),
+            &cases::enclosing(n.div_ceil(4)),
             reference::enclosing,
             reference::judge_enclosing,
             effort,
         ),
     ];
-    Report { machine: machine(), effort, kernels }
+    let largest = if effort.cases >= FULL.cases { 100_000 } else { 10_000.min(100 * n) };
+    Report { machine: machine(), effort, kernels, trees: trees::growth(largest, effort) }
 }
 
 fn machine() -> Machine {
@@ -206,3 +210,38 @@ struct ReadError {
 #[derive(Debug, thiserror::Error)]
 #[error("{} differences from the stored report:\n{}", .0.len(), .0.join("\n"))]
 struct Different(Vec<String>);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_follows_from_the_json_alone() {
+        let report = measure(Effort { cases: 8, rounds: 1, timing: 1 });
+        let json = serde_json::to_string(&report).unwrap();
+        let read: Report = serde_json::from_str(&json).unwrap();
+        assert_eq!(read, report);
+        let text = |report| {
+            document::html(&document::blocks(report)) + &document::markdown(&document::blocks(report))
+        };
+        assert!(text(&read) == text(&report));
+    }
+
+    #[test]
+    fn our_kernels_make_no_error() {
+        let report = measure(Effort { cases: 64, rounds: 1, timing: 1 });
+        for kernel in &report.kernels {
+            let ours =
+                kernel.methods.iter().find(|method| method.name == "ours").expect("each kernel has ours");
+            let total = ours.total();
+            assert_eq!(total.wrong_verdicts, 0, "{}", kernel.name);
+            // What is correctly rounded has no error; coordinates are within 1 ulp, a radius within a few.
+            let bound = match kernel.name.as_str() {
+                "texture coordinates" => 1.0,
+                "enclosing sphere" => 20.0,
+                _ => 0.0,
+            };
+            assert!(total.max_ulp <= bound, "{}: {} ulp", kernel.name, total.max_ulp);
+        }
+    }
+}

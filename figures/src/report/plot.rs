@@ -1,13 +1,14 @@
 //! Work-precision diagrams as SVG: error across, time up, one point a method.
 //!
-//! An error of zero has its own column at the left, NaN one at the right, and the scale between them is logarithmic.
-//! Methods that no other beats in time, error and wrong verdicts at once are filled and joined; the rest is hollow. A
-//! triangle marks wrong verdicts. Blue and orange are Okabe and Ito's, told apart by all; colours follow the reader's
+//! A mark is at the largest error on ordinary cases, and a line leads from it to the largest error on all classes. An error of
+//! zero has its own column at the left, NaN one at the right; the scale between them is logarithmic. A method is
+//! hollow if another is no worse in time, both errors and wrong verdicts; those that no other beats in time and ordinary error
+//! are joined. A triangle marks wrong verdicts. Blue and orange are Okabe and Ito's, told apart by all; colours follow the reader's
 //! light or dark setting.
 
 use std::fmt::Write;
 
-use super::measure::{Kernel, Measured, NAN_DISTANCE};
+use super::measure::{Errors, Kernel, Measured, NAN_DISTANCE};
 
 const WIDTH: f64 = 800.0;
 const HEIGHT: f64 = 440.0;
@@ -21,43 +22,57 @@ const COLUMN: f64 = 60.0;
 /// A method's place in a diagram.
 struct Point<'a> {
     method: &'a Measured,
+    /// Where its error on ordinary cases and on all is, and its time.
     x: f64,
+    x_all: f64,
     y: f64,
+    /// The share of wrong verdicts.
     wrong: f64,
-    error: f64,
+    /// Nanoseconds, error on ordinary cases, on all, and the share of wrong verdicts.
+    costs: [f64; 4],
     dominated: bool,
+    on_front: bool,
 }
 
 /// Returns the diagram of a kernel. Without values the error is the share of wrong verdicts.
 pub(super) fn work_precision(kernel: &Kernel) -> String {
     let by_share = kernel.values.is_none();
     let (decades, label) = if by_share {
-        ((0, 6), "wrong verdicts, per million")
+        ((0, 6), "wrong verdicts, per million: mark: ordinary cases, line: up to all classes")
     } else {
-        ((0, 19), "largest error of all classes, in units of the last place")
+        ((0, 19), "largest error in units of the last place: mark: ordinary cases, line: up to all classes")
     };
     let mut points: Vec<Point> = kernel
         .methods
         .iter()
         .map(|method| {
+            let error = |errors: &Errors| {
+                if by_share { 1e6 * share(errors) } else { errors.max_ulp }
+            };
             let total = method.total();
-            let wrong = total.wrong_verdicts as f64 / total.cases as f64;
-            let error = if by_share { 1e6 * wrong } else { total.max_ulp };
-            Point { method, x: across(error, decades), y: 0.0, wrong, error, dominated: false }
+            let (ordinary, all) = (error(&method.classes[0].errors), error(&total));
+            let wrong = share(&total);
+            let costs = [method.time(), ordinary, all, wrong];
+            let [x, x_all] = [ordinary, all].map(|error| across(error, decades));
+            Point { method, x, x_all, y: 0.0, wrong, costs, dominated: false, on_front: false }
         })
         .collect();
     let times = points.iter().map(|point| point.method.time());
     let (low, high) = times.fold((f64::MAX, 0.0f64), |(low, high), t| (low.min(t), high.max(t)));
     let (low, high) = (low.log10() - 0.15, high.log10() + 0.2);
     for i in 0..points.len() {
-        let time = points[i].method.time();
-        points[i].y = TOP + (HEIGHT - TOP - BOTTOM) * (high - time.log10()) / (high - low);
-        let key = |point: &Point| [point.method.time(), point.error, point.wrong];
-        let mine = key(&points[i]);
-        points[i].dominated = points.iter().any(|other| {
-            let other = key(other);
-            other.iter().zip(mine).all(|(o, m)| *o <= m) && other != mine
-        });
+        let point = &points[i];
+        let beaten_in = |costs: &[usize]| {
+            points.iter().any(|other| {
+                let no_worse = costs.iter().all(|&k| other.costs[k] <= point.costs[k]);
+                let better = costs.iter().any(|&k| other.costs[k] < point.costs[k]);
+                // A verdict alone is no replacement for a value.
+                no_worse && better && (other.method.has_values || !point.method.has_values)
+            })
+        };
+        let (dominated, on_front) = (beaten_in(&[0, 1, 2, 3]), !beaten_in(&[0, 1]));
+        let y = TOP + (HEIGHT - TOP - BOTTOM) * (high - point.method.time().log10()) / (high - low);
+        points[i] = Point { dominated, on_front, y, ..points[i] };
     }
 
     let mut svg = String::new();
@@ -66,6 +81,10 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
     marks(&mut svg, &points);
     svg.push_str("</svg>\n");
     svg
+}
+
+fn share(errors: &Errors) -> f64 {
+    errors.wrong_verdicts as f64 / errors.cases as f64
 }
 
 /// Returns where an error is drawn.
@@ -81,13 +100,11 @@ fn across(error: f64, (first, last): (i32, i32)) -> f64 {
     }
 }
 
-fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (low, high): (f64, f64)) {
-    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-    // Writing to a string cannot fail.
-    let _ = write!(
-        svg,
+/// Returns the beginning of a diagram: size, colours, title.
+pub(super) fn style(title: &str) -> String {
+    format!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img">
-<title>{title}: time against error</title>
+<title>{title}</title>
 <style>
 svg {{ --ink: #1b1b1b; --paper: #ffffff; --grid: #d9d9d9; --ours: #0072b2; --other: #d55e00; background: var(--paper); font: 13px sans-serif; }}
 @media (prefers-color-scheme: dark) {{ svg {{ --ink: #e8e8e8; --paper: #16181c; --grid: #3a3d42; --ours: #56b4e9; --other: #e69f00; }} }}
@@ -98,14 +115,21 @@ text {{ fill: var(--ink); }}
 .ours {{ stroke: var(--ours); fill: var(--ours); }}
 .other {{ stroke: var(--other); fill: var(--other); }}
 .mark {{ stroke-width: 2; }}
+.mark.reach {{ stroke-width: 1.2; }}
 .hollow {{ fill: var(--paper); }}
-.name {{ stroke: none; }}
+.name {{ stroke: var(--paper); stroke-width: 4; paint-order: stroke; }}
 </style>
 <rect width="{WIDTH}" height="{HEIGHT}" fill="var(--paper)"/>
 <text x="{LEFT}" y="24" font-size="16" font-weight="bold">{title}</text>
 "#,
-        title = escape(&kernel.name),
-    );
+        title = escape(title),
+    )
+}
+
+fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (low, high): (f64, f64)) {
+    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
+    svg.push_str(&style(&kernel.name));
+    // Writing to a string cannot fail.
     let (first, last) = decades;
     for decade in (first..=last).step_by(if last > 9 { 3 } else { 1 }) {
         let x = across(10f64.powi(decade), decades);
@@ -157,7 +181,7 @@ text {{ fill: var(--ink); }}
 
 /// Joins the points that no other beats, as steps.
 fn join_front(svg: &mut String, points: &[Point]) {
-    let mut front: Vec<&Point> = points.iter().filter(|point| !point.dominated).collect();
+    let mut front: Vec<&Point> = points.iter().filter(|point| point.on_front).collect();
     front.sort_by(|a, b| a.x.total_cmp(&b.x).then(b.y.total_cmp(&a.y)));
     let mut path = String::new();
     for point in front {
@@ -169,8 +193,9 @@ fn join_front(svg: &mut String, points: &[Point]) {
 
 fn marks(svg: &mut String, points: &[Point]) {
     let mut order: Vec<&Point> = points.iter().collect();
-    order.sort_by(|a, b| a.y.total_cmp(&b.y));
+    order.sort_by(|a, b| b.y.total_cmp(&a.y));
     let mut labels: Vec<(f64, f64)> = Vec::new();
+    let mut names = String::new();
     for point in order {
         let Point { x, y, .. } = *point;
         let class = format!(
@@ -183,12 +208,16 @@ fn marks(svg: &mut String, points: &[Point]) {
         } else {
             format!("M {:.1} {y:.1} a 6 6 0 1 0 12 0 a 6 6 0 1 0 -12 0 z", x - 6.0)
         };
-        let _ = writeln!(svg, r#"<path class="{class}" d="{shape}"/>"#);
-        // A label goes beside its mark, and below a label that is already there.
+        let _ = writeln!(
+            svg,
+            r#"<line class="{class} reach" x1="{x:.1}" y1="{y:.1}" x2="{:.1}" y2="{y:.1}"/><path class="{class}" d="{shape}"/>"#,
+            point.x_all
+        );
+        // A label goes above the line at its mark, and further up if another is there.
         let to_left = x > 0.62 * WIDTH;
-        let mut label_y = y + 4.0;
-        while labels.iter().any(|&(lx, ly)| (lx - x).abs() < 230.0 && (ly - label_y).abs() < 15.0) {
-            label_y += 3.0;
+        let mut label_y = y - 4.0;
+        while labels.iter().any(|&(lx, ly)| (lx - x).abs() < 230.0 && (ly - label_y).abs() < 14.0) {
+            label_y -= 2.0;
         }
         labels.push((x, label_y));
         let text = if point.wrong > 0.0 {
@@ -198,11 +227,13 @@ fn marks(svg: &mut String, points: &[Point]) {
         };
         let (anchor, label_x) = if to_left { ("end", x - 11.0) } else { ("start", x + 11.0) };
         let _ = writeln!(
-            svg,
+            names,
             r#"<text class="name" x="{label_x:.1}" y="{label_y:.1}" text-anchor="{anchor}">{}</text>"#,
             escape(&text)
         );
     }
+    // Names come last, so that no line crosses them.
+    svg.push_str(&names);
 }
 
 /// Returns a share in percent, with at least one digit that is not zero.

@@ -28,13 +28,15 @@ fn answer(rank: usize, values: [f64; 9]) -> Answer<9> {
     Answer { verdict: u8::try_from(rank).expect("a rank is at most 3"), values }
 }
 
-/// Rank 3 or, if the determinant is zero, no answer: counted as rank 2.
+/// What is no rank: the method has no answer for a singular matrix.
+const NO_ANSWER: u8 = 9;
+
 fn adjugate<T: Real>(case: &[f64; 9]) -> Answer<9> {
     let [a, b, c] = [0, 3, 6].map(|from| vector::<T>(case, from));
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
     let determinant = dot(a, bc);
     if determinant == T::of(0.0) {
-        return Answer::without_values(2);
+        return Answer::without_values(NO_ANSWER);
     }
     // The rows of the inverse are the cross products.
     let entry = |row: usize, column: usize| ([bc, ca, ab][row][column] / determinant).wide();
@@ -45,7 +47,7 @@ fn normal_equations(case: &[f64; 9]) -> Answer<9> {
     let a = DMat3::from_cols_array(case);
     let square = a.transpose() * a;
     if square.determinant() == 0.0 {
-        return Answer::without_values(2);
+        return Answer::without_values(NO_ANSWER);
     }
     answer(3, (square.inverse() * a.transpose()).to_cols_array())
 }

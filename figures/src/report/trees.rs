@@ -1,0 +1,235 @@
+//! What the trees cost to build and what they save: a plain loop, the report's tree by index halves, and ours, one ray
+//! at a time and many at once.
+//!
+//! The scene is a cloud of equal spheres in a cube, which fill about a tenth of it however many they are; the rays come
+//! from all sides and aim at points in the cube.
+
+use std::fmt::Write;
+use std::hint::black_box;
+use std::time::Instant;
+
+use glam::DVec3;
+use rt_geom::{HalvingTree, Hit, Ray, Sphere, SphereTree};
+use serde::{Deserialize, Serialize};
+
+use super::cases::Random;
+use super::measure::Effort;
+use super::plot::{escape, style};
+
+/// What was measured of one method on one number of spheres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Growth {
+    pub(super) method: String,
+    pub(super) ours: bool,
+    pub(super) spheres: usize,
+    pub(super) rays: usize,
+    /// Seconds to build, once.
+    pub(super) build: f64,
+    /// Nanoseconds for one ray: the median of the rounds.
+    pub(super) median: f64,
+    /// Rays whose hit is not the plain loop's, of those compared.
+    pub(super) different: usize,
+    pub(super) compared: usize,
+    /// Sphere tests for one ray, where they are counted.
+    pub(super) tests: Option<f64>,
+}
+
+/// Sphere tests that the plain loop may make in one round.
+const LOOP: usize = 4_000_000;
+
+/// Measures growing clouds, up to `largest` spheres.
+pub(super) fn growth(largest: usize, effort: Effort) -> Vec<Growth> {
+    let counts = std::iter::successors(Some(100), |count| Some(count * 10));
+    counts.take_while(|&count| count <= largest).flat_map(|count| cloud(count, effort)).collect()
+}
+
+fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
+    let mut random = Random::new(count as u64);
+    let radius = (0.1 * 8.0 / (count as f64 * 4.19)).cbrt();
+    let mut point = |size: f64| DVec3::from_array(random.vector(size));
+    let sphere = |center| Sphere::new(center, radius).expect("a cloud is made of valid spheres");
+    let spheres: Vec<Sphere> = (0..count).map(|_| sphere(point(1.0))).collect();
+    let rays: Vec<Ray> = std::iter::from_fn(|| {
+        let origin = point(1.0).normalize_or(DVec3::X) * 4.0;
+        Some(Ray::new(origin, point(1.0) - origin))
+    })
+    .flatten()
+    .take(2 * effort.cases)
+    .collect();
+    let within = 0.0..f64::INFINITY;
+    let few = &rays[..(LOOP / count).clamp(1, rays.len())];
+
+    let timed = |build: &dyn Fn()| {
+        let start = Instant::now();
+        build();
+        start.elapsed().as_secs_f64()
+    };
+    let halving = HalvingTree::new(spheres.clone(), Vec::new());
+    let tree = SphereTree::new(spheres.clone(), Vec::new());
+    let builds = [
+        0.0,
+        timed(&|| drop(black_box(HalvingTree::new(spheres.clone(), Vec::new())))),
+        timed(&|| drop(black_box(SphereTree::new(spheres.clone(), Vec::new())))),
+    ];
+
+    let plain = |ray: &Ray| {
+        let hits = spheres.iter().enumerate();
+        let hits =
+            hits.filter_map(|(index, sphere)| Some(Hit { index, t: sphere.closest(ray, within.clone())? }));
+        // The first of equal hits is kept: the lower index.
+        hits.reduce(|best, hit| if hit.t < best.t { hit } else { best })
+    };
+    let truth: Vec<Option<Hit>> = few.iter().map(plain).collect();
+    let tests: usize = rays.iter().map(|ray| halving.closest_counted(ray, within.clone()).1).sum();
+    type Trace<'a> = Box<dyn Fn(&[Ray], &mut [Option<Hit>]) + 'a>;
+    let each = |closest: &dyn Fn(&Ray) -> Option<Hit>, rays: &[Ray], hits: &mut [Option<Hit>]| {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = closest(ray);
+        }
+    };
+    let one_by_one = |ray: &Ray| tree.closest(ray, 0.0..f64::INFINITY);
+    let by_halves = |ray: &Ray| halving.closest(ray, 0.0..f64::INFINITY);
+    let methods: [(&str, bool, &[Ray], f64, Option<f64>, Trace); 4] = [
+        (
+            "plain loop",
+            false,
+            few,
+            builds[0],
+            Some(count as f64),
+            Box::new(|rays, hits| each(&plain, rays, hits)),
+        ),
+        (
+            "index halves",
+            false,
+            &rays,
+            builds[1],
+            Some(tests as f64 / rays.len() as f64),
+            Box::new(|rays, hits| each(&by_halves, rays, hits)),
+        ),
+        ("ours", true, &rays, builds[2], None, Box::new(|rays, hits| each(&one_by_one, rays, hits))),
+        (
+            "ours, batch",
+            true,
+            &rays,
+            builds[2],
+            None,
+            Box::new(|rays, hits| tree.closest_batch(rays, 0.0..f64::INFINITY, hits)),
+        ),
+    ];
+    let mut times = vec![Vec::new(); methods.len()];
+    let mut hits = vec![None; rays.len()];
+    let mut different = vec![0; methods.len()];
+    for _ in 0..effort.rounds {
+        for (i, (.., rays, _, _, trace)) in methods.iter().enumerate() {
+            let start = Instant::now();
+            trace(black_box(rays), &mut hits[..rays.len()]);
+            times[i].push(start.elapsed().as_nanos() as f64 / rays.len() as f64);
+            let same = |(hit, truth): (&Option<Hit>, &Option<Hit>)| {
+                let key = |hit: &Hit| (hit.index, hit.t.to_bits());
+                hit.as_ref().map(key) == truth.as_ref().map(key)
+            };
+            different[i] = hits.iter().zip(&truth).filter(|&pair| !same(pair)).count();
+        }
+    }
+    methods
+        .into_iter()
+        .zip(times)
+        .zip(different)
+        .map(|(((method, ours, rays, build, tests, _), mut times), different)| {
+            times.sort_by(f64::total_cmp);
+            Growth {
+                method: method.to_owned(),
+                ours,
+                spheres: count,
+                rays: rays.len(),
+                build,
+                median: times[times.len() / 2],
+                different,
+                compared: truth.len(),
+                tests,
+            }
+        })
+        .collect()
+}
+
+/// Returns the diagram of the time for one ray against the number of spheres, both logarithmic.
+pub(super) fn plot(growth: &[Growth]) -> String {
+    let (left, right, top, bottom) = (70.0, 680.0, 44.0, 374.0);
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x.log10()), high.max(x.log10())))
+    };
+    let (x_low, x_high) = range(&mut growth.iter().map(|row| row.spheres as f64));
+    let (y_low, y_high) = range(&mut growth.iter().map(|row| row.median));
+    let (y_low, y_high) = (y_low.floor(), y_high.ceil());
+    let x_high = x_high.max(x_low + 1.0);
+    let x = |spheres: f64| left + 20.0 + (right - left - 40.0) * (spheres.log10() - x_low) / (x_high - x_low);
+    let y = |time: f64| top + (bottom - top) * (y_high - time.log10()) / (y_high - y_low);
+    let mut svg = style("closest hit in a cloud of spheres");
+    let mut decade = y_low;
+    // Writing to a string cannot fail.
+    while decade <= y_high {
+        let at = y(10f64.powf(decade));
+        let _ = writeln!(svg, r#"<line class="grid" x1="{left}" y1="{at:.1}" x2="{right}" y2="{at:.1}"/>"#);
+        let _ = writeln!(
+            svg,
+            r#"<text x="{}" y="{:.1}" text-anchor="end">1e{decade}</text>"#,
+            left - 8.0,
+            at + 4.0
+        );
+        decade += 1.0;
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for row in growth {
+        if !names.contains(&row.method.as_str()) {
+            names.push(&row.method);
+        }
+        let at = x(row.spheres as f64);
+        if row.method == growth[0].method {
+            let _ =
+                writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{top}" x2="{at:.1}" y2="{bottom}"/>"#);
+            let _ = writeln!(svg, r#"<text x="{at:.1}" y="392" text-anchor="middle">{}</text>"#, row.spheres);
+        }
+    }
+    let mut ends: Vec<f64> = Vec::new();
+    for name in names {
+        let rows: Vec<&Growth> = growth.iter().filter(|row| row.method == name).collect();
+        let class = if rows[0].ours { "ours" } else { "other" };
+        let points: String =
+            rows.iter().map(|row| format!("{:.1},{:.1} ", x(row.spheres as f64), y(row.median))).collect();
+        let _ = writeln!(svg, r#"<polyline class="mark {class}" style="fill: none" points="{points}"/>"#);
+        for row in &rows {
+            let (cx, cy) = (x(row.spheres as f64), y(row.median));
+            let _ = writeln!(svg, r#"<circle class="mark {class}" cx="{cx:.1}" cy="{cy:.1}" r="4"/>"#);
+        }
+        let mut end = rows.last().map_or(top, |row| y(row.median)) + 4.0;
+        while ends.iter().any(|other| (other - end).abs() < 14.0) {
+            end -= 2.0;
+        }
+        ends.push(end);
+        let _ =
+            writeln!(svg, r#"<text class="name" x="{}" y="{end:.1}">{}</text>"#, right - 10.0, escape(name));
+    }
+    let _ = writeln!(svg, r#"<path class="axis" d="M {left} {top} V {bottom} H {right}"/>"#);
+    let _ = writeln!(svg, r#"<text x="375" y="414" text-anchor="middle">spheres</text>"#);
+    let _ = writeln!(
+        svg,
+        r#"<text transform="translate(18 209) rotate(-90)" text-anchor="middle">nanoseconds a ray, one thread</text>"#
+    );
+    svg + "</svg>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_tree_gives_the_plain_loops_hit() {
+        let rows = growth(1000, Effort { cases: 64, rounds: 1, timing: 1 });
+        assert_eq!(rows.len(), 8);
+        for row in &rows {
+            assert_eq!((row.different, row.compared), (0, 128), "{} of {}", row.method, row.spheres);
+        }
+        let saved = rows.iter().find(|row| row.method == "index halves" && row.spheres == 1000);
+        assert!(saved.and_then(|row| row.tests).is_some_and(|tests| tests > 1.0));
+    }
+}
