@@ -13,5 +13,5 @@ pub use inside::{Inside, inside_triangle};
 pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
 pub use sphere::{Side, Sphere};
-pub use tree::{HalvingTree, Hit, Shape, SphereTree};
+pub use tree::{HalvingTree, Hit, Shape, SphereTree, Visits};
 pub use triangle::{Triangle, Verdict};

@@ -106,6 +106,17 @@ impl Sphere {
         }
     }
 
+    /// Returns the correctly rounded `t` of a closest hit that is known to exist, from its bounds: what `closest` gives.
+    #[inline]
+    pub(crate) fn refine(&self, prepared: &PreparedRay, hit: Candidate) -> Option<f64> {
+        let middle = hit.low + 0.5 * (hit.high - hit.low);
+        // The root where the line enters is the smaller one: if it is in the range, it is the closest hit.
+        match exact::near_root(self, prepared.ray, prepared.square, prepared.reach, middle) {
+            Some(t) if prepared.start < t && t < prepared.end => Some(t),
+            _ => self.closest(prepared.ray, prepared.within()),
+        }
+    }
+
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {

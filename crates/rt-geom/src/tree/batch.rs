@@ -1,0 +1,298 @@
+//! Many independent rays at once: each waits for memory while the others work.
+//!
+//! A walk of one ray is a chain of loads and hard-to-predict branches. Here [`FLIGHT`] rays are on their way together.
+//! A round takes one step of each: rays at an inner node test it, rays at a leaf block test that, and what survives
+//! there meets the exact kernels one round later. What a ray needs next is prefetched a round ahead, and a step has no
+//! branch that depends on how many children are met: the children are compressed, sorted in registers and stored on
+//! the ray's stack whole, and a ray is appended to the list of its next kind of work by arithmetic.
+
+use std::ops::Range;
+
+use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
+
+use super::cull::{Line, box_keys, meet_balls, meet_boxes};
+use super::node::{Child, Kind, WIDTH};
+use super::walk::{Areas, Best, STACK, prefetch_lines};
+use super::{Hit, SphereTree};
+use crate::Ray;
+use crate::ray::PreparedRay;
+
+/// Rays on their way at once.
+const FLIGHT: usize = 32;
+
+/// The low bits of a pending key tell the child's lane.
+const LANE: u32 = 15;
+const _: () = assert!(WIDTH == 16);
+
+struct Slot<'a> {
+    line: Line,
+    ray: PreparedRay<'a>,
+    best: Best,
+    at: Child,
+    height: usize,
+    /// Whose answer it is.
+    target: usize,
+    keys: [u32; STACK + WIDTH],
+    nodes: [u32; STACK + WIDTH],
+}
+
+impl<'a> Slot<'a> {
+    fn new(ray: &'a Ray, within: &Range<f64>) -> Self {
+        Self {
+            line: Line::EVERYTHING,
+            ray: PreparedRay::new(ray, within.clone()),
+            best: Best::NONE,
+            at: Child::from_bits(0),
+            height: 0,
+            target: 0,
+            keys: [0; _],
+            nodes: [0; _],
+        }
+    }
+}
+
+/// Which slots have what to do next.
+#[derive(Default)]
+struct Lists {
+    slots: [[u8; FLIGHT]; 5],
+    len: [usize; 5],
+}
+
+const INNER: usize = Kind::Inner as usize;
+const SPHERES: usize = Kind::Spheres as usize;
+const TRIANGLES: usize = Kind::Triangles as usize;
+const DONE: usize = 3;
+/// The step is done: take up what is pending.
+const RESUME: usize = 4;
+
+impl Lists {
+    #[inline(always)]
+    fn push(&mut self, list: usize, slot: usize) {
+        self.slots[list][self.len[list]] = byte(slot);
+        self.len[list] += 1;
+    }
+
+    #[inline(always)]
+    fn take(&mut self, list: usize) -> ([u8; FLIGHT], usize) {
+        let len = std::mem::take(&mut self.len[list]);
+        (self.slots[list], len)
+    }
+}
+
+/// Primitives that the cull left, and whose they are.
+struct Survivors {
+    places: [u32; FLIGHT * WIDTH + WIDTH],
+    slots: [u32; FLIGHT * WIDTH + WIDTH],
+    len: usize,
+}
+
+/// Casts all rays and hands each answer to `answer`, in no particular order.
+#[inline(always)]
+pub(super) fn fly<S: Simd, const ANY: bool>(
+    simd: S,
+    tree: &SphereTree,
+    rays: &[Ray],
+    within: &Range<f64>,
+    mut answer: impl FnMut(usize, Option<Hit>),
+) {
+    let Some(root) = tree.root else {
+        (0..rays.len()).for_each(|i| answer(i, None));
+        return;
+    };
+    let areas = Areas::of(tree);
+    let mut waiting = rays.iter().enumerate();
+    let mut lists = Lists::default();
+    let mut slots: Vec<Slot> = (0..FLIGHT.min(rays.len())).map(|_| Slot::new(&rays[0], within)).collect();
+    for (at, slot) in slots.iter_mut().enumerate() {
+        if launch(slot, root, tree, within, &mut waiting, &mut answer) {
+            lists.push(root.kind() as usize, at);
+        }
+    }
+    let mut flying: usize = lists.len.iter().sum();
+    let mut survivors = [Survivors::NONE, Survivors::NONE];
+    while flying > 0 {
+        // What the cull left in the last round. A slot's survivors follow each other.
+        for (kind, survivors) in [SPHERES, TRIANGLES].into_iter().zip(&mut survivors) {
+            let len = std::mem::take(&mut survivors.len);
+            for i in 0..len {
+                let (place, at) = (survivors.places[i] as usize, survivors.slots[i] as usize);
+                let slot = &mut slots[at];
+                if !(ANY && slot.best.exists()) {
+                    let (bounds, place) = if kind == SPHERES {
+                        (tree.spheres[place].candidate(&slot.ray, slot.best.limit()), place)
+                    } else {
+                        (
+                            tree.triangles[place].candidate(&slot.ray, slot.best.limit()),
+                            tree.spheres.len() + place,
+                        )
+                    };
+                    if let Some(bounds) = bounds {
+                        slot.best.offer(bounds, place, tree, &slot.ray);
+                    }
+                }
+            }
+        }
+        // In a loop of its own: the loads of one slot need not wait for the stores of another.
+        let (resumed, len) = lists.take(RESUME);
+        for &at in &resumed[..len] {
+            let slot = &mut slots[usize::from(at)];
+            slot.line.shorten(slot.best.limit());
+            if ANY && slot.best.exists() {
+                slot.height = 0;
+            }
+            next(slot, usize::from(at), tree, &areas, &mut lists);
+        }
+        let (inner, len) = lists.take(INNER);
+        for &at in &inner[..len] {
+            let at = usize::from(at);
+            let slot = &mut slots[at];
+            let index = slot.at.index();
+            let node = &tree.nodes[index];
+            let (keys, mask) = box_keys(simd, &slot.line, &node.boxes);
+            let lanes = u32x16::from_fn(simd, word);
+            let met = ((keys & !LANE) | lanes).compress(mask);
+            let count = mask.to_bitmask().count_ones() as usize;
+            let height = slot.height;
+            let low: &mut [u32; WIDTH] =
+                (&mut slot.keys[height..height + WIDTH]).try_into().expect("a slice of sixteen");
+            if count <= 8 {
+                let (first, _) = met.split();
+                descending(simd, first).store_slice(&mut low[..8]);
+            } else {
+                met.store_slice(low);
+                low[..count].sort_unstable_by(|a, b| b.cmp(a));
+            }
+            slot.nodes[height..height + WIDTH].fill(word(index));
+            slot.height = height + count;
+            lists.push(RESUME, at);
+        }
+        let (leaf, len) = lists.take(SPHERES);
+        for &at in &leaf[..len] {
+            let slot = &mut slots[usize::from(at)];
+            let block = slot.at.index();
+            let met = meet_balls(simd, &slot.line, &tree.sphere_blocks[block]);
+            survivors[0].add(simd, met, block, at);
+            lists.push(RESUME, usize::from(at));
+        }
+        for i in 0..survivors[0].len {
+            prefetch_lines(&tree.spheres[survivors[0].places[i] as usize], 1);
+        }
+        let (leaf, len) = lists.take(TRIANGLES);
+        for &at in &leaf[..len] {
+            let slot = &mut slots[usize::from(at)];
+            let block = slot.at.index();
+            let met = meet_boxes(simd, &slot.line, &tree.triangle_blocks[block], &mut [0; WIDTH]);
+            survivors[1].add(simd, met, block, at);
+            lists.push(RESUME, usize::from(at));
+        }
+        for i in 0..survivors[1].len {
+            prefetch_lines(&tree.triangles[survivors[1].places[i] as usize], 2);
+        }
+        let (done, len) = lists.take(DONE);
+        for &at in &done[..len] {
+            let slot = &mut slots[usize::from(at)];
+            if ANY {
+                answer(slot.target, slot.best.exists().then_some(Hit { index: 0, t: 0.0 }));
+            } else {
+                answer(slot.target, slot.best.hit(tree, &slot.ray));
+            }
+            if launch(slot, root, tree, within, &mut waiting, &mut answer) {
+                lists.push(root.kind() as usize, usize::from(at));
+            } else {
+                flying -= 1;
+            }
+        }
+    }
+}
+
+/// Puts the next ray that may meet anything into the slot; `false` if none is left.
+#[inline(always)]
+fn launch<'a>(
+    slot: &mut Slot<'a>,
+    root: Child,
+    tree: &SphereTree,
+    within: &Range<f64>,
+    waiting: &mut impl Iterator<Item = (usize, &'a Ray)>,
+    answer: &mut impl FnMut(usize, Option<Hit>),
+) -> bool {
+    for (target, ray) in waiting {
+        slot.ray = PreparedRay::new(ray, within.clone());
+        if slot.line.set(&tree.frame, &slot.ray) {
+            slot.best = Best::NONE;
+            slot.at = root;
+            slot.height = 0;
+            slot.target = target;
+            return true;
+        }
+        answer(target, None);
+    }
+    false
+}
+
+/// Takes the nearest pending part that is still of interest and puts the slot on the list of its kind.
+#[inline(always)]
+fn next(slot: &mut Slot, at: usize, tree: &SphereTree, areas: &Areas, lists: &mut Lists) {
+    let last = slot.line.last_key();
+    let mut height = slot.height;
+    while height > 0 && slot.keys[height - 1] & !LANE > last {
+        height -= 1;
+    }
+    if height == 0 {
+        lists.push(DONE, at);
+        return;
+    }
+    height -= 1;
+    slot.height = height;
+    let node = &tree.nodes[slot.nodes[height] as usize];
+    let child = node.children[(slot.keys[height] & LANE) as usize];
+    slot.at = child;
+    lists.push(child.kind() as usize, at);
+    areas.prefetch(child);
+}
+
+impl Survivors {
+    const NONE: Self = Self { places: [0; _], slots: [0; _], len: 0 };
+
+    #[inline(always)]
+    fn add<S: Simd>(&mut self, simd: S, met: u32, block: usize, slot: u8) {
+        let places = u32x16::from_fn(simd, word) + word(block * WIDTH);
+        let mask = fearless_simd::mask32x16::from_bitmask(simd, u64::from(met));
+        places.compress(mask).store_slice(&mut self.places[self.len..self.len + WIDTH]);
+        self.slots[self.len..self.len + WIDTH].fill(u32::from(slot));
+        self.len += met.count_ones() as usize;
+    }
+}
+
+/// Sorts eight numbers, the greatest first: a bitonic network (K. Batcher, "Sorting Networks and Their Applications",
+/// 1968).
+#[inline(always)]
+fn descending<S: Simd>(simd: S, v: u32x8<S>) -> u32x8<S> {
+    // Swap neighbours, reverse fours, swap pairs: as bytes, within blocks of sixteen.
+    let shuffle = |order: [u8; 4]| {
+        let bytes: [u8; 32] = std::array::from_fn(|i| 4 * order[i / 4 % 4] + byte(i % 4));
+        u8x32::from_slice(simd, &bytes)
+    };
+    let (neighbours, fours, pairs) = (shuffle([1, 0, 3, 2]), shuffle([3, 2, 1, 0]), shuffle([2, 3, 0, 1]));
+    let step = |v: u32x8<S>, partner: u32x8<S>, greater: u64| {
+        let greater = mask32x8::from_bitmask(simd, greater);
+        greater.select(v.max(partner), v.min(partner))
+    };
+    let v = step(v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101);
+    let v = step(v, v.swizzle_dyn_within_blocks(fours), 0b0011_0011);
+    let v = step(v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101);
+    let v = step(v, v.swizzle_dyn_within_blocks(fours).rotate_elements_left::<4>(), 0b0000_1111);
+    let v = step(v, v.swizzle_dyn_within_blocks(pairs), 0b0011_0011);
+    step(v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101)
+}
+
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "a slot, of which there are few, or a lane")]
+fn byte(x: usize) -> u8 {
+    x as u8
+}
+
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "a place or a node, of which there are fewer than 2^32")]
+fn word(x: usize) -> u32 {
+    x as u32
+}

@@ -1,0 +1,471 @@
+//! Builds the tree: a binary tree by binned surface area, then collapsed to sixteen children a node.
+//!
+//! 1. Each primitive becomes a box in cull coordinates.
+//! 2. Top down, a range of boxes is cut where the estimated cost is least: the surface of each side times the number
+//!    of leaf blocks it fills (I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007). Cuts
+//!    lie at multiples of sixteen, so every leaf block but the last is full, and leaf block `k` holds exactly the
+//!    primitives `16 k ..` of the leaf order: no index is stored for it. Long ranges are cut between bins, short ones
+//!    after sorting.
+//! 3. A node takes in the largest of its children until it has sixteen.
+//! 4. Every child gets its minimal ball.
+//!
+//! The two sides of a cut are built in parallel. Where things lie depends on the counts alone, never on the order in
+//! which threads finish, so the tree is the same for any number of threads.
+
+use std::ops::Range;
+
+use glam::Vec4;
+
+use super::node::{Child, Kind, Node, WIDTH};
+
+/// A primitive's box. `low.w` carries the primitive's index as bits; no arithmetic uses that lane's value.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    low: Vec4,
+    high: Vec4,
+}
+
+impl Item {
+    pub(super) fn new(low: [f32; 3], high: [f32; 3], index: u32) -> Self {
+        let [x, y, z] = low;
+        Self {
+            low: Vec4::new(x, y, z, f32::from_bits(index)),
+            high: Vec4::new(high[0], high[1], high[2], 0.0),
+        }
+    }
+
+    pub(super) fn index(&self) -> u32 {
+        self.low.w.to_bits()
+    }
+
+    pub(super) fn low(&self) -> [f32; 3] {
+        self.low.truncate().to_array()
+    }
+
+    pub(super) fn high(&self) -> [f32; 3] {
+        self.high.truncate().to_array()
+    }
+
+    /// Twice the center.
+    #[inline(always)]
+    fn middle(&self) -> Vec4 {
+        self.low + self.high
+    }
+}
+
+/// A box that grows.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: Vec4,
+    high: Vec4,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { low: Vec4::splat(f32::INFINITY), high: Vec4::splat(f32::NEG_INFINITY) };
+
+    #[inline(always)]
+    fn add(&mut self, low: Vec4, high: Vec4) {
+        // `min(new, old)`: in this order a NaN in the unused lane stays out of the others' way.
+        self.low = low.min(self.low);
+        self.high = high.max(self.high);
+    }
+
+    #[inline(always)]
+    fn merge(&mut self, other: &Self) {
+        self.add(other.low, other.high);
+    }
+
+    /// Half the surface; 0 for nothing.
+    #[inline(always)]
+    fn half_area(&self) -> f32 {
+        let side = (self.high - self.low).max(Vec4::ZERO);
+        side.x * side.y + side.y * side.z + side.z * side.x
+    }
+}
+
+/// A node of the binary tree, in preorder: its first side follows it, its second follows that. A side with `k` leaf
+/// blocks has `2 k - 1` nodes, so both sides know where they lie before they are built.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch {
+    pub(super) low: [f32; 3],
+    pub(super) high: [f32; 3],
+    /// Leaf blocks of the first side; 0 for a leaf block.
+    pub(super) first: u32,
+}
+
+impl Branch {
+    const NONE: Self = Self { low: [0.0; 3], high: [0.0; 3], first: 0 };
+
+    pub(super) fn half_area(&self) -> f32 {
+        let [x, y, z]: [f32; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
+        x * y + y * z + z * x
+    }
+}
+
+/// Ranges longer than this are cut in parallel.
+const PARALLEL: usize = 4096;
+/// Ranges up to this length are sorted; longer ones are binned.
+const SORTED: usize = 128;
+const BINS: usize = 32;
+/// The binary tree is never deeper: where the best cuts would lead there, the range is halved.
+pub(super) const MAX_DEPTH: u32 = 64;
+
+/// Sorts the items into leaf order and returns the binary tree over them.
+pub(super) fn binary_tree(items: &mut [Item]) -> Vec<Branch> {
+    let leaves = items.len().div_ceil(WIDTH);
+    let mut branches = vec![Branch::NONE; (2 * leaves).saturating_sub(1)];
+    if leaves > 0 {
+        let bounds = bounds_of(items);
+        grow(items, &mut branches, &bounds, 0);
+    }
+    branches
+}
+
+/// Bounds of the items and of their middles.
+#[derive(Clone, Copy)]
+struct Extent {
+    items: Bounds,
+    middles: Bounds,
+}
+
+fn bounds_of(items: &[Item]) -> Extent {
+    let mut extent = Extent { items: Bounds::EMPTY, middles: Bounds::EMPTY };
+    for item in items {
+        extent.items.add(item.low, item.high);
+        let middle = item.middle();
+        extent.middles.add(middle, middle);
+    }
+    extent
+}
+
+fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32) {
+    let leaves = items.len().div_ceil(WIDTH);
+    branches[0] = Branch {
+        low: extent.items.low.truncate().to_array(),
+        high: extent.items.high.truncate().to_array(),
+        first: 0,
+    };
+    if leaves == 1 {
+        return;
+    }
+    let first = cut(items, extent, depth);
+    branches[0].first = u32::try_from(first / WIDTH).expect("an index fits in 32 bits");
+    let (left, right) = items.split_at_mut(first);
+    let (left_branches, right_branches) = branches[1..].split_at_mut(2 * (first / WIDTH) - 1);
+    let side = |items: &mut [Item], branches: &mut [Branch]| {
+        let extent = bounds_of(items);
+        grow(items, branches, &extent, depth + 1);
+    };
+    if leaves * WIDTH > PARALLEL {
+        rayon::join(|| side(left, left_branches), || side(right, right_branches));
+    } else {
+        side(left, left_branches);
+        side(right, right_branches);
+    }
+}
+
+/// Reorders the items and returns how many belong to the first side: a multiple of [`WIDTH`], and neither side empty.
+fn cut(items: &mut [Item], extent: &Extent, depth: u32) -> usize {
+    let leaves = items.len().div_ceil(WIDTH);
+    let spread = extent.middles.high - extent.middles.low;
+    let halvings = usize::BITS - (leaves - 1).leading_zeros();
+    if depth + halvings + 1 >= MAX_DEPTH {
+        let axis = spread.truncate().max_position();
+        let first = leaves / 2 * WIDTH;
+        items.select_nth_unstable_by(first, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
+        return first;
+    }
+    if items.len() <= SORTED { sorted_cut(items) } else { binned_cut(items, extent, spread) }
+}
+
+/// A float as an integer in the same order.
+fn ordered(x: f32) -> u32 {
+    let bits = x.to_bits();
+    bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 }
+}
+
+/// Tries every cut at a multiple of [`WIDTH`] along each axis.
+fn sorted_cut(items: &mut [Item]) -> usize {
+    let n = items.len();
+    let leaves = n.div_ceil(WIDTH);
+    let mut orders = [[0u64; SORTED]; 3];
+    let mut best = (f32::INFINITY, 0, WIDTH);
+    for (axis, order) in orders.iter_mut().enumerate() {
+        let order = &mut order[..n];
+        for (i, (key, item)) in order.iter_mut().zip(&*items).enumerate() {
+            *key = u64::from(ordered(item.middle()[axis])) << 32 | i as u64;
+        }
+        order.sort_unstable();
+        let block = |range: Range<usize>| {
+            let mut bounds = Bounds::EMPTY;
+            for key in &order[range] {
+                let item = &items[position(*key)];
+                bounds.add(item.low, item.high);
+            }
+            bounds
+        };
+        let mut blocks = [Bounds::EMPTY; SORTED / WIDTH];
+        for (k, bounds) in blocks[..leaves].iter_mut().enumerate() {
+            *bounds = block(k * WIDTH..n.min((k + 1) * WIDTH));
+        }
+        let mut tails = blocks;
+        for k in (0..leaves - 1).rev() {
+            let next = tails[k + 1];
+            tails[k].merge(&next);
+        }
+        let mut head = Bounds::EMPTY;
+        for k in 1..leaves {
+            head.merge(&blocks[k - 1]);
+            let cost = head.half_area() * count(k) + tails[k].half_area() * count(leaves - k);
+            if cost < best.0 {
+                best = (cost, axis, k * WIDTH);
+            }
+        }
+    }
+    let (_, axis, first) = best;
+    let mut sorted = [Item { low: Vec4::ZERO, high: Vec4::ZERO }; SORTED];
+    for (item, key) in sorted.iter_mut().zip(&orders[axis][..n]) {
+        *item = items[position(*key)];
+    }
+    items.copy_from_slice(&sorted[..n]);
+    first
+}
+
+/// The position in the low half of a sort key.
+#[expect(clippy::cast_possible_truncation, reason = "the low half is at most SORTED")]
+fn position(key: u64) -> usize {
+    (key & u64::from(u32::MAX)) as usize
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a weight of an estimate")]
+fn count(n: usize) -> f32 {
+    n as f32
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    bounds: Bounds,
+    count: usize,
+}
+
+type Bins = [[Bin; BINS]; 3];
+
+/// Which bin a middle falls into along each axis.
+#[derive(Clone, Copy)]
+struct Binning {
+    low: Vec4,
+    scale: Vec4,
+}
+
+impl Binning {
+    fn new(middles: &Bounds, spread: Vec4) -> Self {
+        let scale = Vec4::from_array(spread.to_array().map(|s| {
+            // A spread so small that the quotient overflows counts as none.
+            let scale = (BINS as f32 - 1.0) / s;
+            if scale.is_finite() { scale } else { 0.0 }
+        }));
+        Self { low: middles.low, scale }
+    }
+
+    /// The bins of the three axes. Adding 2^23 rounds to an integer and leaves it in the low bits.
+    #[inline(always)]
+    fn bins(&self, item: &Item) -> [usize; 3] {
+        let place = (item.middle() - self.low) * self.scale + 8_388_608.0;
+        [place.x, place.y, place.z].map(|p| p.to_bits() as usize % BINS)
+    }
+}
+
+fn fill_bins(items: &[Item], binning: Binning) -> Box<Bins> {
+    if items.len() > 1 << 16 {
+        let (left, right) = items.split_at(items.len() / 2);
+        let (mut a, b) = rayon::join(|| fill_bins(left, binning), || fill_bins(right, binning));
+        for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
+            a.bounds.merge(&b.bounds);
+            a.count += b.count;
+        }
+        return a;
+    }
+    let mut bins = Box::new([[Bin { bounds: Bounds::EMPTY, count: 0 }; BINS]; 3]);
+    for item in items {
+        let places = binning.bins(item);
+        for (axis, place) in places.into_iter().enumerate() {
+            let bin = &mut bins[axis][place];
+            bin.bounds.add(item.low, item.high);
+            bin.count += 1;
+        }
+    }
+    bins
+}
+
+/// Cuts between two bins, and moves at most eight items across so that the sides are multiples of [`WIDTH`].
+fn binned_cut(items: &mut [Item], extent: &Extent, spread: Vec4) -> usize {
+    let n = items.len();
+    let binning = Binning::new(&extent.middles, spread);
+    let bins = fill_bins(items, binning);
+    // (cost, axis, first bin of the second side, items before it)
+    let mut best = (f32::INFINITY, 0, 0, 0);
+    for (axis, bins) in bins.iter().enumerate() {
+        let mut tails = [0.0; BINS];
+        let (mut tail, mut behind) = (Bounds::EMPTY, 0);
+        for k in (1..BINS).rev() {
+            tail.merge(&bins[k].bounds);
+            behind += bins[k].count;
+            tails[k] = tail.half_area() * count(behind.div_ceil(WIDTH));
+        }
+        let (mut head, mut before) = (Bounds::EMPTY, 0);
+        for k in 1..BINS {
+            head.merge(&bins[k - 1].bounds);
+            before += bins[k - 1].count;
+            let cost = head.half_area() * count(before.div_ceil(WIDTH)) + tails[k];
+            if before > 0 && before < n && cost < best.0 {
+                best = (cost, axis, k, before);
+            }
+        }
+    }
+    let (_, axis, bin, before) = best;
+    // The nearest multiple that leaves something on both sides.
+    let first = ((before + WIDTH / 2) / WIDTH).clamp(1, n.div_ceil(WIDTH) - 1) * WIDTH;
+    if before == 0 {
+        // All middles coincide (or cannot be told apart): any halves will do.
+        return n.div_ceil(WIDTH) / 2 * WIDTH;
+    }
+    partition(items, |item| binning.bins(item)[axis] < bin);
+    let key = |item: &Item| item.middle()[axis];
+    if first < before {
+        // The last ones of the first side move over.
+        move_to_border(&mut items[..before], before - first, |a, b| key(a).total_cmp(&key(b)));
+    } else if first > before {
+        let side = &mut items[before..];
+        side.reverse();
+        move_to_border(side, first - before, |a, b| key(b).total_cmp(&key(a)));
+        side.reverse();
+    }
+    first
+}
+
+/// Puts the items for which `first` holds before the others.
+fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) {
+    let (mut i, mut j) = (0, items.len());
+    loop {
+        while i < j && first(&items[i]) {
+            i += 1;
+        }
+        while i < j && !first(&items[j - 1]) {
+            j -= 1;
+        }
+        if i >= j {
+            return;
+        }
+        items.swap(i, j - 1);
+    }
+}
+
+/// Puts the `many` greatest items last.
+fn move_to_border(items: &mut [Item], many: usize, order: impl Fn(&Item, &Item) -> std::cmp::Ordering) {
+    let at = items.len() - many;
+    items.select_nth_unstable_by(at, order);
+}
+
+/// A part of the collapsed tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) child: Child,
+    /// How many entries a walk can need to keep for later.
+    pub(super) stack: usize,
+}
+
+/// The leaf blocks below each child of a node; an unused lane has none.
+pub(super) type Spans = [Range<usize>; WIDTH];
+
+/// Turns the binary tree into nodes of up to sixteen children each, with leaf blocks of the given kind, and appends
+/// them, parents first; and for each node which leaf blocks its children hold.
+///
+/// Of all ways to do so it takes the one with the least sum of the nodes' surfaces, which is the number of nodes that
+/// a random ray is expected to visit.
+pub(super) fn collapse(
+    branches: &[Branch],
+    kind: Kind,
+    nodes: &mut Vec<Node>,
+    spans: &mut Vec<Spans>,
+) -> Part {
+    let mut collapse = Collapse { branches, costs: costs(branches), kind, nodes, spans };
+    collapse.part(0, 0..branches.len().div_ceil(2))
+}
+
+/// For each branch and `j` the least cost of what is below it as at most `j + 1` children of one node.
+fn costs(branches: &[Branch]) -> Vec<[f32; WIDTH]> {
+    let mut costs = vec![[0.0; WIDTH]; branches.len()];
+    for (at, branch) in branches.iter().enumerate().rev() {
+        if branch.first > 0 {
+            let (left, right) = (costs[at + 1], costs[at + 2 * branch.first as usize]);
+            let cost = &mut costs[at];
+            for j in 1..WIDTH {
+                cost[j] = shares(&left, &right, j).map(|(_, cost)| cost).fold(f32::INFINITY, f32::min);
+            }
+            cost[0] = branch.half_area() + cost[WIDTH - 1];
+            for j in 1..WIDTH {
+                cost[j] = cost[j].min(cost[j - 1]);
+            }
+        }
+    }
+    costs
+}
+
+/// The ways to share `j + 1` places between two sides: how many less one go to the first, and the cost.
+fn shares(left: &[f32; WIDTH], right: &[f32; WIDTH], j: usize) -> impl Iterator<Item = (usize, f32)> {
+    left[..j].iter().zip(right[..j].iter().rev()).map(|(a, b)| a + b).enumerate()
+}
+
+struct Collapse<'a> {
+    branches: &'a [Branch],
+    costs: Vec<[f32; WIDTH]>,
+    kind: Kind,
+    nodes: &'a mut Vec<Node>,
+    spans: &'a mut Vec<Spans>,
+}
+
+impl Collapse<'_> {
+    /// The part below the branch `at`, which holds the leaf blocks `leaves`. The recursion is no deeper than the
+    /// binary tree, so [`MAX_DEPTH`] bounds it.
+    fn part(&mut self, at: usize, leaves: Range<usize>) -> Part {
+        if leaves.len() == 1 {
+            return Part { child: Child::new(self.kind, leaves.start), stack: 0 };
+        }
+        let mut parts = Vec::with_capacity(WIDTH);
+        self.share(at, leaves, WIDTH - 1, &mut parts);
+        let index = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        self.spans
+            .push(std::array::from_fn(|lane| parts.get(lane).map_or(0..0, |(_, leaves)| leaves.clone())));
+        let mut stack = 0;
+        for (lane, (at, leaves)) in parts.iter().enumerate() {
+            let part = self.part(*at, leaves.clone());
+            let Branch { low, high, .. } = self.branches[*at];
+            self.nodes[index].children[lane] = part.child;
+            self.nodes[index].boxes.set(lane, low, high);
+            stack = stack.max(part.stack);
+        }
+        // All are stacked for a moment when four or more are met.
+        Part { child: Child::new(Kind::Inner, index), stack: stack + parts.len() }
+    }
+
+    /// Collects the children that make up the branch `at` at the least cost, sharing `j + 1` places between its sides.
+    fn share(&self, at: usize, leaves: Range<usize>, j: usize, parts: &mut Vec<(usize, Range<usize>)>) {
+        let first = self.branches[at].first as usize;
+        let (left, right) = (at + 1, at + 2 * first);
+        let cheapest = shares(&self.costs[left], &self.costs[right], j).min_by(|a, b| a.1.total_cmp(&b.1));
+        let (k, _) = cheapest.expect("two places or more");
+        let middle = leaves.start + first;
+        self.fill(left, leaves.start..middle, k, parts);
+        self.fill(right, middle..leaves.end, j - 1 - k, parts);
+    }
+
+    /// Collects the branch `at` as at most `j + 1` children.
+    fn fill(&self, at: usize, leaves: Range<usize>, mut j: usize, parts: &mut Vec<(usize, Range<usize>)>) {
+        let cost = &self.costs[at];
+        while j > 0 && cost[j - 1] <= cost[j] {
+            j -= 1;
+        }
+        if j == 0 { parts.push((at, leaves)) } else { self.share(at, leaves, j, parts) }
+    }
+}

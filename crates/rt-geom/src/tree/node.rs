@@ -1,0 +1,215 @@
+//! How the tree lies in memory: sixteen children a node, one array of sixteen numbers (a cache line) a quantity.
+//!
+//! All coordinates here are f32 in *cull coordinates* (see [`Frame`]): the scene lies in the unit ball. Bounds are
+//! rounded outward when they are narrowed, so a bound contains exactly what it bounds; what the arithmetic of a query
+//! loses is made up for by the query's own slack (`cull.rs`).
+
+use glam::DVec3;
+
+use crate::Sphere;
+
+/// Children of a node, and primitives of a leaf block.
+pub(super) const WIDTH: usize = 16;
+
+/// One number for each child.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Lanes(pub(super) [f32; WIDTH]);
+
+impl Lanes {
+    pub(super) const fn splat(value: f32) -> Self {
+        Self([value; WIDTH])
+    }
+}
+
+/// Up to sixteen balls. An unused lane has NaN for its center, which no test passes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Balls {
+    pub(super) center: [Lanes; 3],
+    pub(super) radius: Lanes,
+}
+
+impl Balls {
+    pub(super) const EMPTY: Self = Self { center: [Lanes::splat(f32::NAN); 3], radius: Lanes::splat(0.0) };
+
+    pub(super) fn set(&mut self, lane: usize, ball: Ball) {
+        for axis in 0..3 {
+            self.center[axis].0[lane] = ball.center[axis];
+        }
+        self.radius.0[lane] = ball.radius;
+    }
+}
+
+/// Up to sixteen boxes: the three lower planes, then the three upper ones. An unused lane is inside out.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Boxes(pub(super) [Lanes; 6]);
+
+impl Boxes {
+    pub(super) const EMPTY: Self = {
+        let (low, high) = (Lanes::splat(f32::INFINITY), Lanes::splat(f32::NEG_INFINITY));
+        Self([low, low, low, high, high, high])
+    };
+
+    pub(super) fn set(&mut self, lane: usize, low: [f32; 3], high: [f32; 3]) {
+        for axis in 0..3 {
+            self.0[axis].0[lane] = low[axis];
+            self.0[axis + 3].0[lane] = high[axis];
+        }
+    }
+}
+
+/// An inner node, as a walk sees it: the boxes of its children, because boxes cull better above the leaf blocks
+/// (`docs/performance.md` has the measurement). Their minimal balls, the tree's definition, lie aside.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Node {
+    pub(super) boxes: Boxes,
+    pub(super) children: [Child; WIDTH],
+}
+
+impl Node {
+    /// The children in use.
+    pub(super) fn children(&self) -> &[Child] {
+        let used = self.boxes.0[0].0.iter().take_while(|low| **low < f32::INFINITY).count();
+        &self.children[..used]
+    }
+
+    pub(super) const EMPTY: Self = Self { boxes: Boxes::EMPTY, children: [Child(0); WIDTH] };
+}
+
+/// What a child is and where: two bits of kind above thirty bits of index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(super) struct Child(u32);
+
+/// The kinds of [`Child`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A [`Node`].
+    Inner,
+    /// A block of spheres: block `k` bounds the leaf-ordered spheres `16 k ..`.
+    Spheres,
+    /// A block of triangles, likewise.
+    Triangles,
+}
+
+impl Child {
+    const SHIFT: u32 = 30;
+    pub(super) fn new(kind: Kind, index: usize) -> Self {
+        let index =
+            u32::try_from(index).ok().filter(|&i| i < 1 << Self::SHIFT).expect("fewer than 2^34 primitives");
+        Self((kind as u32) << Self::SHIFT | index)
+    }
+
+    #[inline(always)]
+    pub(super) fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    #[inline(always)]
+    pub(super) fn bits(self) -> u32 {
+        self.0
+    }
+
+    #[inline(always)]
+    pub(super) fn is_inner(self) -> bool {
+        self.0 >> Self::SHIFT == Kind::Inner as u32
+    }
+
+    #[inline(always)]
+    pub(super) fn kind(self) -> Kind {
+        match self.0 >> Self::SHIFT {
+            0 => Kind::Inner,
+            1 => Kind::Spheres,
+            _ => Kind::Triangles,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        (self.0 & ((1 << Self::SHIFT) - 1)) as usize
+    }
+}
+
+/// A ball in cull coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ball {
+    pub(super) center: [f32; 3],
+    pub(super) radius: f32,
+}
+
+/// Cull coordinates: `(p - center) * scale`, where `scale` is a power of two and everything lies in the unit ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    center: DVec3,
+    scale: f64,
+}
+
+/// Bound of the error of a cull coordinate in f64, for points of the unit ball: `docs/numerics.md`, section 9.
+pub(super) const COORDINATE_ERROR: f64 = 1.0 / (1u64 << 50) as f64;
+
+impl Frame {
+    /// The frame in which `ball` has a radius between 1/2 and 1. Without a ball, everything finite lies within 1.
+    pub(super) fn around(ball: Option<&Sphere>) -> Self {
+        match ball {
+            Some(ball) if ball.radius() < f64::MAX / 16.0 => {
+                // 2^-k with 2^(k-1) <= radius < 2^k; finite for a radius of 0.
+                let bits = ball.radius().to_bits() >> 52;
+                let exponent = (2045 - bits).min(2044);
+                Self { center: ball.center(), scale: f64::from_bits(exponent << 52) }
+            }
+            // |p| + r <= (sqrt(3) + 1) 2^1024 < 2^1026.
+            _ => Self { center: DVec3::ZERO, scale: f64::from_bits(1 << (52 - 4)) },
+        }
+    }
+
+    /// The cull coordinates of a point: halved first, so that the difference cannot overflow.
+    #[inline(always)]
+    pub(super) fn point(&self, p: DVec3) -> DVec3 {
+        (p * 0.5 - self.center * 0.5) * self.scale * 2.0
+    }
+
+    #[inline(always)]
+    pub(super) fn length(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    #[inline(always)]
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The sphere as a ball that contains it.
+    pub(super) fn ball(&self, sphere: &Sphere) -> Ball {
+        let center = self.point(sphere.center());
+        let narrow = center.as_vec3();
+        let moved = (center - narrow.as_dvec3()).length();
+        Ball {
+            center: narrow.to_array(),
+            radius: up(self.length(sphere.radius()) + moved + 2.0 * COORDINATE_ERROR),
+        }
+    }
+}
+
+/// The next f32 above: never less than `x`, for finite `x` in the range of f32.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest, then one step outward")]
+pub(super) fn up(x: f64) -> f32 {
+    (x as f32).next_up()
+}
+
+/// The next f32 below: never more than `x`, for finite `x` in the range of f32.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest, then one step outward")]
+pub(super) fn down(x: f64) -> f32 {
+    (x as f32).next_down()
+}
+
+/// The nearest f32: the error counts in the slack of the cull.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest")]
+pub(super) fn narrow(x: f64) -> f32 {
+    x as f32
+}

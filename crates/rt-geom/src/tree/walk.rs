@@ -1,0 +1,323 @@
+//! One ray through the tree: nearest children first, and nothing that begins beyond the best hit.
+//!
+//! A node's bounds are tested all at once. Of the children met the nearest is followed and the others go on a stack,
+//! farthest first, each with the parameter at which the ray enters it, so that it can be dropped unseen when a better
+//! hit has been found since. At a leaf block the survivors of the cull meet the exact kernels. They answer with bounds
+//! of `t` and not yet with its last bits; those are only worked out for the winner, and where bounds overlap.
+
+use std::hint::black_box;
+use std::ops::Range;
+
+use fearless_simd::Simd;
+
+use super::cull::{Line, meet_balls, meet_boxes};
+use super::node::{Child, Kind, WIDTH};
+use super::{Hit, Shape, SphereTree};
+use crate::ray::{Candidate, PreparedRay};
+
+/// What a query did, for reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Visits {
+    /// Inner nodes: tests of up to sixteen bounds at once.
+    pub nodes: usize,
+    /// Leaf blocks: tests of up to sixteen primitives' bounds at once.
+    pub leaves: usize,
+    /// Primitives that met the exact test.
+    pub tests: usize,
+}
+
+/// A part of the tree that is still to be visited: the key of its entry above its [`Child`].
+pub(super) type Pending = u64;
+
+/// Entries that a stack of the usual size holds; [`SphereTree::stack`] tells what a tree needs.
+pub(super) const STACK: usize = 128;
+
+#[inline(always)]
+fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
+    u64::from(keys[lane]) << 32 | u64::from(children[lane].bits())
+}
+
+/// The best hit so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Best {
+    bounds: Candidate,
+    /// Its place in leaf order, or [`NOWHERE`](Self::NOWHERE).
+    place: usize,
+}
+
+impl Best {
+    const NOWHERE: usize = usize::MAX;
+
+    pub(super) const NONE: Self =
+        Self { bounds: Candidate { low: f64::INFINITY, high: f64::INFINITY }, place: Self::NOWHERE };
+
+    #[inline(always)]
+    pub(super) fn exists(&self) -> bool {
+        self.place != Self::NOWHERE
+    }
+
+    /// No candidate beyond this can win.
+    #[inline(always)]
+    pub(super) fn limit(&self) -> f64 {
+        self.bounds.high
+    }
+
+    /// Takes the candidate if it is closer; returns whether it did.
+    #[inline(always)]
+    pub(super) fn offer(
+        &mut self,
+        bounds: Candidate,
+        place: usize,
+        tree: &SphereTree,
+        ray: &PreparedRay,
+    ) -> bool {
+        let closer = bounds.high < self.bounds.low
+            || (bounds.low <= self.bounds.high && self.settle(place, tree, ray));
+        if closer && bounds.high < self.bounds.low {
+            *self = Self { bounds, place };
+        }
+        closer
+    }
+
+    /// The bounds overlap: compares the correctly rounded parameters, then the indices.
+    #[cold]
+    #[inline(never)]
+    fn settle(&mut self, place: usize, tree: &SphereTree, ray: &PreparedRay) -> bool {
+        let rounded = |place: usize| tree.rounded(place, ray).expect("a candidate is a hit");
+        if !self.exists() {
+            let t = rounded(place);
+            *self = Self { bounds: Candidate { low: t, high: t }, place };
+            return true;
+        }
+        let lower = tree.index[place] < tree.index[self.place];
+        if tree.placed(place) == tree.placed(self.place) {
+            // Twins: the same `t`.
+            if lower {
+                self.place = place;
+            }
+            return lower;
+        }
+        let (new, old) = (rounded(place), rounded(self.place));
+        let closer = new
+            .total_cmp(&old)
+            .then(if lower { std::cmp::Ordering::Less } else { std::cmp::Ordering::Greater })
+            .is_lt();
+        let (t, place) = if closer { (new, place) } else { (old, self.place) };
+        *self = Self { bounds: Candidate { low: t, high: t }, place };
+        closer
+    }
+
+    /// The hit, with its `t` correctly rounded.
+    #[inline(always)]
+    pub(super) fn hit(&self, tree: &SphereTree, ray: &PreparedRay) -> Option<Hit> {
+        if !self.exists() {
+            return None;
+        }
+        let Candidate { low, high } = self.bounds;
+        let t = if low.to_bits() == high.to_bits() {
+            low
+        } else {
+            let refined = match tree.spheres.get(self.place) {
+                Some(sphere) => sphere.refine(ray, self.bounds),
+                None => tree.rounded(self.place, ray),
+            };
+            refined.expect("a candidate is a hit")
+        };
+        Some(Hit { index: tree.index[self.place] as usize, t })
+    }
+}
+
+/// Finds the closest hit, or with `ANY` some hit.
+#[inline(always)]
+pub(super) fn walk<S: Simd, const ANY: bool, const COUNT: bool>(
+    simd: S,
+    tree: &SphereTree,
+    ray: &PreparedRay,
+    mut line: Line,
+    stack: &mut [Pending],
+    visits: &mut Visits,
+) -> Best {
+    let mut best = Best::NONE;
+    let mut keys = [0; WIDTH];
+    let areas = Areas::of(tree);
+    let mut height = 0;
+    let Some(mut at) = tree.root else { return best };
+    loop {
+        if at.is_inner() {
+            let node = &tree.nodes[at.index()];
+            if COUNT {
+                visits.nodes += 1;
+            }
+            let mut met = meet_boxes(simd, black_box(&line), &node.boxes, &mut keys);
+            if met != 0 {
+                let next = |met: &mut u32| {
+                    let lane = met.trailing_zeros() as usize;
+                    *met &= *met - 1;
+                    areas.prefetch(node.children[lane]);
+                    pending(&keys, &node.children, lane)
+                };
+                let a = next(&mut met);
+                if met == 0 {
+                    at = child(a);
+                    continue;
+                }
+                let b = next(&mut met);
+                let (a, b) = (a.min(b), a.max(b));
+                if met == 0 {
+                    stack[height] = b;
+                    height += 1;
+                    at = child(a);
+                    continue;
+                }
+                let c = next(&mut met);
+                let (a, c) = (a.min(c), a.max(c));
+                let (b, c) = (b.min(c), b.max(c));
+                if met == 0 {
+                    stack[height] = c;
+                    stack[height + 1] = b;
+                    height += 2;
+                    at = child(a);
+                    continue;
+                }
+                // Four or more: sorted into place.
+                let base = height;
+                stack[base] = c;
+                stack[base + 1] = b;
+                stack[base + 2] = a;
+                height += 3;
+                while met != 0 {
+                    let new = next(&mut met);
+                    let mut hole = height;
+                    while hole > base && stack[hole - 1] < new {
+                        stack[hole] = stack[hole - 1];
+                        hole -= 1;
+                    }
+                    stack[hole] = new;
+                    height += 1;
+                }
+                height -= 1;
+                at = child(stack[height]);
+                continue;
+            }
+        } else {
+            if COUNT {
+                visits.leaves += 1;
+            }
+            let before = best.limit();
+            let block = at.index();
+            if at.kind() == Kind::Spheres {
+                let mut met = meet_balls(simd, black_box(&line), &tree.sphere_blocks[block]);
+                while met != 0 {
+                    let place = block * WIDTH + met.trailing_zeros() as usize;
+                    met &= met - 1;
+                    if COUNT {
+                        visits.tests += 1;
+                    }
+                    if let Some(bounds) = tree.spheres[place].candidate(ray, best.limit()) {
+                        best.offer(bounds, place, tree, ray);
+                    }
+                }
+            } else {
+                let mut met = meet_boxes(simd, black_box(&line), &tree.triangle_blocks[block], &mut keys);
+                while met != 0 {
+                    let place = block * WIDTH + met.trailing_zeros() as usize;
+                    met &= met - 1;
+                    if COUNT {
+                        visits.tests += 1;
+                    }
+                    if let Some(bounds) = tree.triangles[place].candidate(ray, best.limit()) {
+                        best.offer(bounds, tree.spheres.len() + place, tree, ray);
+                    }
+                }
+            }
+            if ANY && best.exists() {
+                return best;
+            }
+            if best.limit() < before {
+                line.shorten(best.limit());
+            }
+        }
+        // Back to the nearest part that is still of interest.
+        let last = line.last_key();
+        loop {
+            if height == 0 {
+                return best;
+            }
+            height -= 1;
+            if (stack[height] >> 32) as u32 <= last {
+                at = child(stack[height]);
+                break;
+            }
+        }
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "the child is the low half")]
+fn child(pending: Pending) -> Child {
+    Child::from_bits(pending as u32)
+}
+
+/// Asks for cache lines that are likely to be read soon.
+#[inline(always)]
+pub(super) fn prefetch_lines<T>(start: *const T, lines: usize) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        for line in 0..lines {
+            #[expect(unsafe_code, reason = "the intrinsic takes a raw pointer")]
+            // SAFETY: a prefetch has no effect but on the caches, whatever the address.
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(64 * line));
+            }
+        }
+    }
+}
+
+/// Where children of each kind lie, to prefetch them without a branch.
+#[derive(Clone, Copy)]
+pub(super) struct Areas([(*const u8, usize); 4]);
+
+impl Areas {
+    #[inline(always)]
+    pub(super) fn of(tree: &SphereTree) -> Self {
+        fn area<T>(items: &[T]) -> (*const u8, usize) {
+            (items.as_ptr().cast(), size_of::<T>())
+        }
+        let nodes = area(&tree.nodes);
+        Self([nodes, area(&tree.sphere_blocks), area(&tree.triangle_blocks), nodes])
+    }
+
+    /// Asks for what a visit of the child reads first.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, child: Child) {
+        let (start, size) = self.0[child.kind() as usize];
+        prefetch_lines(start.wrapping_add(child.index() * size), 7);
+    }
+}
+
+/// Whether a range holds anything: see `docs/architecture.md` on ranges.
+#[inline(always)]
+pub(super) fn is_open(within: &Range<f64>) -> bool {
+    !within.start.is_nan() && !within.end.is_nan() && within.start.total_cmp(&within.end).is_lt()
+}
+
+impl SphereTree {
+    /// The primitive at a place of the leaf order.
+    #[cold]
+    pub(super) fn placed(&self, place: usize) -> Shape {
+        match self.spheres.get(place) {
+            Some(&sphere) => Shape::Sphere(sphere),
+            None => Shape::Triangle(self.triangles[place - self.spheres.len()]),
+        }
+    }
+
+    /// The correctly rounded parameter of the primitive's closest hit.
+    #[inline(always)]
+    fn rounded(&self, place: usize, ray: &PreparedRay) -> Option<f64> {
+        match self.spheres.get(place) {
+            Some(sphere) => sphere.closest(ray.ray, ray.within()),
+            None => self.triangles[place - self.spheres.len()].closest(ray.ray, ray.within()),
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! The trees give the plain loop's answer, bit for bit: index and `t`, on every kind of scene and every instruction set.
+//!
+//! `RT_LONG=1` casts a million rays at each scene.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use rt_geom::{HalvingTree, Hit, Ray, Shape, Sphere, SphereTree, Triangle, enclosing_sphere};
+
+const AHEAD: Range<f64> = 0.0..f64::INFINITY;
+
+/// S. Steele, D. Lea and C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014.
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// In 0..1.
+    fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    fn cube(&mut self) -> DVec3 {
+        DVec3::new(self.signed(), self.signed(), self.signed())
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        usize::try_from(self.bits() % n as u64).unwrap()
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.cube();
+            if (0.01..1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+}
+
+struct Scene {
+    name: &'static str,
+    spheres: Vec<Sphere>,
+    triangles: Vec<Triangle>,
+    /// Rays are aimed at the cube of this center and half side.
+    center: DVec3,
+    size: f64,
+}
+
+fn ball(center: DVec3, radius: f64) -> Sphere {
+    Sphere::new(center, radius).unwrap()
+}
+
+fn soup(random: &mut Random, n: usize, size: f64) -> Vec<Triangle> {
+    let triangle = |_| {
+        let a = random.cube();
+        Triangle::new(a, a + size * random.cube(), a + size * random.cube()).unwrap()
+    };
+    (0..n).map(triangle).collect()
+}
+
+/// A closed surface: a sphere of quadrilaterals, each cut in two.
+fn globe(n: usize) -> Vec<Triangle> {
+    let point = |i: usize, j: usize| {
+        let (u, v) =
+            (i as f64 / n as f64 * std::f64::consts::TAU, j as f64 / n as f64 * std::f64::consts::PI);
+        DVec3::new(v.sin() * u.cos(), v.cos(), v.sin() * u.sin())
+    };
+    let mut out = Vec::new();
+    for i in 0..n {
+        for j in 0..n {
+            let (a, b) = (point(i % n, j), point((i + 1) % n, j));
+            let (c, d) = (point(i % n, j + 1), point((i + 1) % n, j + 1));
+            out.extend([Triangle::new(a, b, c).unwrap(), Triangle::new(b, d, c).unwrap()]);
+        }
+    }
+    out
+}
+
+fn scenes() -> Vec<Scene> {
+    let random = &mut Random(7);
+    let mut scenes = Vec::new();
+    let mut add = |name, spheres, triangles, center, size| {
+        scenes.push(Scene { name, spheres, triangles, center, size });
+    };
+    let uniform = |random: &mut Random, n: usize, scale: f64, center: DVec3| -> Vec<Sphere> {
+        (0..n).map(|_| ball(center + scale * random.cube(), 0.08 * scale)).collect()
+    };
+    add("uniform", uniform(random, 300, 1.0, DVec3::ZERO), vec![], DVec3::ZERO, 1.0);
+    add("one", vec![ball(DVec3::X, 0.5)], vec![], DVec3::X, 1.0);
+    add("a full block", uniform(random, 16, 1.0, DVec3::ZERO), vec![], DVec3::ZERO, 1.0);
+    add("one more than a block", uniform(random, 17, 1.0, DVec3::ZERO), vec![], DVec3::ZERO, 1.0);
+    let log = |random: &mut Random, decades: f64| 10f64.powf(-decades * random.unit());
+    add(
+        "twelve decades of radius",
+        (0..300).map(|_| ball(random.cube(), log(random, 12.0))).collect(),
+        vec![],
+        DVec3::ZERO,
+        1.0,
+    );
+    let mut giant = uniform(random, 200, 1.0, DVec3::ZERO);
+    giant.insert(77, ball(DVec3::new(0.0, -1e6, 0.0), 1e6));
+    add("a giant among small ones", giant, vec![], DVec3::ZERO, 1.0);
+    add("coincident", vec![ball(DVec3::Y, 0.5); 150], vec![], DVec3::Y, 0.6);
+    let shells = (0..200).map(|i| ball(DVec3::Y, 0.5 + f64::from(i % 5) * f64::EPSILON)).collect();
+    add("nearly coincident", shells, vec![], DVec3::Y, 0.6);
+    let line = |i: i32| ball(DVec3::new(f64::from(i), 0.0, 0.0), 0.5);
+    add("touching on a line", (-100..100).map(line).collect(), vec![], DVec3::ZERO, 100.0);
+    let powers = |i: i32| ball(DVec3::new(2f64.powi(i), 0.0, 0.0), 2f64.powi(i - 2));
+    add("powers of two on a line", (-120..120).map(powers).collect(), vec![], DVec3::ZERO, 1e3);
+    let points = |_| ball((8.0 * random.cube()).round() / 8.0, if random.unit() < 0.5 { 0.0 } else { 0.125 });
+    add("points on a grid", (0..300).map(points).collect(), vec![], DVec3::ZERO, 1.0);
+    let far = DVec3::new(1e9, -2e9, 3e9);
+    add("far away", uniform(random, 200, 1.0, far), vec![], far, 1.0);
+    for (name, scale) in [("1e30", 1e30), ("1e-30", 1e-30), ("1e300", 1e300), ("1e-300", 1e-300)] {
+        add(name, uniform(random, 100, scale, DVec3::ZERO), vec![], DVec3::ZERO, scale);
+    }
+    let huge = |_| ball(random.cube() * f64::MAX, random.unit() * f64::MAX);
+    add("no finite sphere encloses", (0..60).map(huge).collect(), vec![], DVec3::ZERO, 1e308);
+    let tiny = |_| ball((random.cube() * 1e-310).round(), 1e-310 * random.unit());
+    add("subnormal", (0..60).map(tiny).collect(), vec![], DVec3::ZERO, 1e-310);
+    add("triangles", vec![], soup(random, 250, 0.3), DVec3::ZERO, 1.0);
+    add("a closed mesh", vec![], globe(12), DVec3::ZERO, 1.0);
+    let mixed = (uniform(random, 100, 1.0, DVec3::ZERO), soup(random, 100, 0.3));
+    add("spheres and triangles", mixed.0, mixed.1, DVec3::ZERO, 1.0);
+    add("nothing", vec![], vec![], DVec3::ZERO, 1.0);
+    scenes
+}
+
+/// Rays of every kind at a scene: from within, from outside, and from far away past the edge of something.
+fn rays(scene: &Scene, n: usize) -> Vec<Ray> {
+    let random = &mut Random(n as u64);
+    let Scene { spheres, triangles, center, size, .. } = scene;
+    let shape_point = |random: &mut Random| {
+        let i = random.below((spheres.len() + triangles.len()).max(1));
+        match (spheres.get(i), triangles.get(i.wrapping_sub(spheres.len()))) {
+            (Some(sphere), _) => (sphere.center(), sphere.radius()),
+            (None, Some(triangle)) => (triangle.vertices()[random.below(3)], 0.0),
+            (None, None) => (*center, *size),
+        }
+    };
+    let mut rays = Vec::with_capacity(n);
+    for attempt in 0.. {
+        if rays.len() == n {
+            break;
+        }
+        let length = 10f64.powf(3.0 * random.signed());
+        // At the ends of the range of doubles some of these overflow: then the next kind takes its turn.
+        let (origin, direction) = match attempt % 4 {
+            0 => (*center + *size * random.cube(), random.direction() * length),
+            1 => {
+                let origin = *center + 4.0 * *size * random.direction();
+                (origin, (*center - origin + *size * random.cube()) * (length / *size))
+            }
+            _ => {
+                // Grazing: aimed at the silhouette, within a few parts in 10^7 or exactly up to rounding.
+                let (at, radius) = shape_point(random);
+                let away = random.direction();
+                let distance = *size * 10f64.powf(4.0 * random.unit());
+                let miss = [0.0, 1e-7 * random.signed(), 1e-12 * random.signed()][random.below(3)];
+                let edge = at + away.any_orthonormal_vector() * radius * (1.0 + miss);
+                let origin = edge + away * distance;
+                (origin, if radius > 0.0 { -away * length } else { (edge - origin) * (length / *size) })
+            }
+        };
+        rays.extend(Ray::new(origin, direction));
+    }
+    rays
+}
+
+fn closest_by_loop(scene: &Scene, ray: &Ray, within: &Range<f64>) -> Option<Hit> {
+    let spheres = scene.spheres.iter().map(|sphere| sphere.closest(ray, within.clone()));
+    let triangles = scene.triangles.iter().map(|triangle| triangle.closest(ray, within.clone()));
+    let mut best: Option<Hit> = None;
+    for (index, t) in spheres.chain(triangles).enumerate() {
+        if let Some(t) = t.filter(|t| best.is_none_or(|best| t.total_cmp(&best.t).is_lt())) {
+            best = Some(Hit { index, t });
+        }
+    }
+    best
+}
+
+fn bits(hit: Option<Hit>) -> Option<(usize, u64)> {
+    hit.map(|hit| (hit.index, hit.t.to_bits()))
+}
+
+fn rays_per_scene() -> usize {
+    if std::env::var_os("RT_LONG").is_some() { 1_000_000 } else { 4_000 }
+}
+
+#[test]
+fn tree_gives_the_plain_loops_hit() {
+    let mut hits = 0;
+    for scene in scenes() {
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let rays = rays(&scene, rays_per_scene());
+        let mut batch = vec![None; rays.len()];
+        tree.closest_batch(&rays, AHEAD, &mut batch);
+        let mut batch_any = vec![false; rays.len()];
+        tree.any_batch(&rays, AHEAD, &mut batch_any);
+        for (i, ray) in rays.iter().enumerate() {
+            let expected = bits(closest_by_loop(&scene, ray, &AHEAD));
+            hits += usize::from(expected.is_some());
+            assert_eq!(bits(tree.closest(ray, AHEAD)), expected, "{}: {ray:?}", scene.name);
+            assert_eq!(tree.any(ray, AHEAD), expected.is_some(), "any, {}: {ray:?}", scene.name);
+            assert_eq!(bits(batch[i]), expected, "batch, {}: {ray:?}", scene.name);
+            assert_eq!(batch_any[i], expected.is_some(), "batch of any, {}: {ray:?}", scene.name);
+        }
+    }
+    assert!(hits > 10_000, "the rays hit too little to prove anything: {hits}");
+}
+
+#[test]
+fn halving_tree_gives_the_plain_loops_hit() {
+    for scene in scenes() {
+        let tree = HalvingTree::new(scene.spheres.clone(), scene.triangles.clone());
+        for ray in rays(&scene, rays_per_scene() / 20) {
+            let expected = closest_by_loop(&scene, &ray, &AHEAD);
+            assert_eq!(bits(tree.closest(&ray, AHEAD)), bits(expected), "{}: {ray:?}", scene.name);
+            assert_eq!(tree.any(&ray, AHEAD), expected.is_some(), "any, {}: {ray:?}", scene.name);
+        }
+    }
+}
+
+#[test]
+fn every_range_gives_the_plain_loops_hit() {
+    for scene in scenes() {
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let halving = HalvingTree::new(scene.spheres.clone(), scene.triangles.clone());
+        for ray in rays(&scene, rays_per_scene() / 40) {
+            let t = closest_by_loop(&scene, &ray, &AHEAD).map_or(1.0, |hit| hit.t);
+            let infinity = f64::INFINITY;
+            let ranges = [
+                -infinity..infinity,
+                t..infinity,
+                t.next_up()..infinity,
+                0.0..t,
+                0.0..t.next_up(),
+                -infinity..0.0,
+                f64::from_bits(1)..infinity,
+                1.0..1.0,
+                2.0..1.0,
+                f64::NAN..1.0,
+                0.0..f64::NAN,
+                infinity..infinity,
+            ];
+            for within in ranges {
+                let expected = bits(closest_by_loop(&scene, &ray, &within));
+                let message = format!("{} in {within:?}: {ray:?}", scene.name);
+                assert_eq!(bits(tree.closest(&ray, within.clone())), expected, "{message}");
+                assert_eq!(tree.any(&ray, within.clone()), expected.is_some(), "any, {message}");
+                assert_eq!(bits(halving.closest(&ray, within.clone())), expected, "halving, {message}");
+                let mut batch = [None];
+                tree.closest_batch(&[ray], within, &mut batch);
+                assert_eq!(bits(batch[0]), expected, "batch, {message}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let mut tried = 0;
+    for scene in scenes() {
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let rays = rays(&scene, rays_per_scene() / 10);
+        let mut expected = vec![None; rays.len()];
+        for (hit, ray) in expected.iter_mut().zip(&rays) {
+            *hit = tree.closest(ray, AHEAD);
+        }
+        for name in ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"] {
+            let Some(tree) = tree.clone().with_simd(name) else { continue };
+            tried += 1;
+            let mut batch = vec![None; rays.len()];
+            tree.closest_batch(&rays, AHEAD, &mut batch);
+            let mut any = vec![false; rays.len()];
+            tree.any_batch(&rays, AHEAD, &mut any);
+            for (i, ray) in rays.iter().enumerate() {
+                let expected = bits(expected[i]);
+                assert_eq!(bits(tree.closest(ray, AHEAD)), expected, "{name}, {}: {ray:?}", scene.name);
+                assert_eq!(bits(batch[i]), expected, "{name} batch, {}: {ray:?}", scene.name);
+                assert_eq!(any[i], expected.is_some(), "{name} any, {}: {ray:?}", scene.name);
+                assert_eq!(tree.any(ray, AHEAD), expected.is_some(), "{name} any, {}: {ray:?}", scene.name);
+            }
+        }
+    }
+    assert!(tried >= 2 * scenes().len(), "at least the scalar level and one other");
+}
+
+#[test]
+fn rays_of_extreme_exponents_are_answered_as_by_the_loop() {
+    let random = &mut Random(3);
+    let exponents = [-1074, -1022, -600, -300, -60, 0, 60, 300, 600, 1000];
+    for scene in scenes() {
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        for _ in 0..200 {
+            let power = |random: &mut Random| 2f64.powi(exponents[random.below(exponents.len())]);
+            let origin = random.cube() * power(random);
+            let direction = random.direction() * power(random);
+            let aimed = (scene.center - origin) * random.unit();
+            for direction in [direction, aimed] {
+                let Some(ray) = Ray::new(origin, direction) else { continue };
+                let expected = bits(closest_by_loop(&scene, &ray, &AHEAD));
+                assert_eq!(bits(tree.closest(&ray, AHEAD)), expected, "{}: {ray:?}", scene.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_bound_is_the_minimal_sphere_of_what_is_below() {
+    for scene in scenes() {
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        tree.for_each_bound(|bound, indices| {
+            assert!(!indices.is_empty(), "{}: a bound of nothing", scene.name);
+            let mut below = Vec::new();
+            for &index in indices {
+                match tree.shape(index as usize) {
+                    Shape::Sphere(sphere) => below.push(sphere),
+                    Shape::Triangle(triangle) => below.extend(triangle.vertices().map(|v| ball(v, 0.0))),
+                }
+            }
+            let minimal = enclosing_sphere(&below).map(|enclosing| enclosing.sphere);
+            assert_eq!(bound.is_some(), minimal.is_some(), "{}", scene.name);
+            if let (Some(bound), Some(minimal)) = (bound, minimal) {
+                assert!(
+                    bound.radius() <= minimal.radius() * (1.0 + 1e-9),
+                    "{}: {bound:?} {minimal:?}",
+                    scene.name
+                );
+            }
+        });
+    }
+}
+
+#[test]
+fn shapes_keep_their_index() {
+    for scene in scenes() {
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        assert_eq!(tree.len(), scene.spheres.len() + scene.triangles.len());
+        for (i, &sphere) in scene.spheres.iter().enumerate() {
+            assert_eq!(tree.shape(i), Shape::Sphere(sphere), "{}", scene.name);
+        }
+        for (i, &triangle) in scene.triangles.iter().enumerate() {
+            assert_eq!(tree.shape(scene.spheres.len() + i), Shape::Triangle(triangle), "{}", scene.name);
+        }
+    }
+}
+
+#[test]
+fn the_tree_is_the_same_for_any_number_of_threads() {
+    let random = &mut Random(11);
+    let spheres: Vec<Sphere> = (0..20_000).map(|_| ball(random.cube(), 0.02 * random.unit())).collect();
+    let tree = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let tree = pool.install(|| SphereTree::new(spheres.clone(), vec![]));
+        let mut bounds = Vec::new();
+        tree.for_each_bound(|bound, indices| bounds.push((bound.copied(), indices.to_vec())));
+        bounds
+    };
+    let one = tree(1);
+    assert!(one.len() > 1000);
+    for threads in [2, 3] {
+        assert!(tree(threads) == one, "{threads} threads build another tree than one");
+    }
+}
+
+#[test]
+fn no_input_overflows_the_stack_or_takes_forever() {
+    let many = 200_000;
+    let on_a_line = |i: u32| ball(DVec3::new(f64::from(i).powi(3), 0.0, 0.0), 1e-3);
+    let mut giant = vec![ball(DVec3::ZERO, 1e-6); many];
+    giant[many / 2] = ball(DVec3::ZERO, 1e9);
+    let inputs: [Vec<Sphere>; 4] = [
+        vec![ball(DVec3::ONE, 1.0); many],
+        (0..200_000).map(on_a_line).collect(),
+        giant,
+        // Each twice as far as the last, over and over: as unbalanced as doubles allow.
+        (0..200_000).map(|i| ball(DVec3::X * 2f64.powi(i % 2000 - 1000), 0.0)).collect(),
+    ];
+    let ray = Ray::new(DVec3::new(-3.0, 1.0, 1.0), DVec3::X).unwrap();
+    for spheres in inputs {
+        let expected = spheres.iter().map(|sphere| sphere.any(&ray, AHEAD)).filter(|hit| *hit).count() > 0;
+        let tree = SphereTree::new(spheres, vec![]);
+        assert_eq!(tree.any(&ray, AHEAD), expected);
+        assert_eq!(tree.closest(&ray, AHEAD).is_some(), expected);
+    }
+}
+
+#[test]
+fn coincident_spheres_give_the_lowest_index() {
+    let tree = SphereTree::new(vec![ball(DVec3::ONE, 1.0); 10_000], vec![]);
+    let ray = Ray::new(DVec3::new(-3.0, 1.0, 1.0), DVec3::X).unwrap();
+    assert_eq!(tree.closest(&ray, AHEAD), Some(Hit { index: 0, t: 3.0 }));
+}
+
+#[test]
+fn the_tree_saves_tests() {
+    let random = &mut Random(5);
+    let spheres: Vec<Sphere> = (0..10_000).map(|_| ball(random.cube(), 0.01)).collect();
+    let tree = SphereTree::new(spheres, vec![]);
+    let (mut work, mut tests) = (0, 0);
+    for _ in 0..1000 {
+        let ray = Ray::new(random.cube(), random.direction()).unwrap();
+        let (hit, visits) = tree.closest_counted(&ray, AHEAD);
+        assert_eq!(bits(hit), bits(tree.closest(&ray, AHEAD)));
+        assert_eq!(tree.any_counted(&ray, AHEAD).0, hit.is_some());
+        work += visits.nodes + visits.leaves;
+        tests += visits.tests;
+    }
+    assert!(work < 30_000, "{work} nodes and leaf blocks for a thousand rays");
+    assert!(tests < 4_000, "{tests} exact tests for a thousand rays");
+}
