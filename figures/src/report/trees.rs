@@ -34,6 +34,19 @@ pub(super) struct Growth {
     pub(super) tests: Option<f64>,
 }
 
+/// Writes the closest hit of each ray.
+type Trace<'a> = Box<dyn Fn(&[Ray], &mut [Option<Hit>]) + 'a>;
+
+/// A way to find closest hits, as [`Growth`] describes it.
+struct Contestant<'a> {
+    name: &'static str,
+    ours: bool,
+    rays: &'a [Ray],
+    build: f64,
+    tests: Option<f64>,
+    trace: Trace<'a>,
+}
+
 /// Sphere tests that the plain loop may make in one round.
 const LOOP: usize = 4_000_000;
 
@@ -81,7 +94,6 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
     };
     let truth: Vec<Option<Hit>> = few.iter().map(plain).collect();
     let tests: usize = rays.iter().map(|ray| halving.closest_counted(ray, within.clone()).1).sum();
-    type Trace<'a> = Box<dyn Fn(&[Ray], &mut [Option<Hit>]) + 'a>;
     let each = |closest: &dyn Fn(&Ray) -> Option<Hit>, rays: &[Ray], hits: &mut [Option<Hit>]| {
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = closest(ray);
@@ -89,38 +101,48 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
     };
     let one_by_one = |ray: &Ray| tree.closest(ray, 0.0..f64::INFINITY);
     let by_halves = |ray: &Ray| halving.closest(ray, 0.0..f64::INFINITY);
-    let methods: [(&str, bool, &[Ray], f64, Option<f64>, Trace); 4] = [
-        (
-            "plain loop",
-            false,
-            few,
-            builds[0],
-            Some(count as f64),
-            Box::new(|rays, hits| each(&plain, rays, hits)),
-        ),
-        (
-            "index halves",
-            false,
-            &rays,
-            builds[1],
-            Some(tests as f64 / rays.len() as f64),
-            Box::new(|rays, hits| each(&by_halves, rays, hits)),
-        ),
-        ("ours", true, &rays, builds[2], None, Box::new(|rays, hits| each(&one_by_one, rays, hits))),
-        (
-            "ours, batch",
-            true,
-            &rays,
-            builds[2],
-            None,
-            Box::new(|rays, hits| tree.closest_batch(rays, 0.0..f64::INFINITY, hits)),
-        ),
+    let [no_build, build_halving, build_tree] = builds;
+    let tests = tests as f64 / rays.len() as f64;
+    let all = &rays[..];
+    let methods = [
+        Contestant {
+            name: "plain loop",
+            ours: false,
+            rays: few,
+            build: no_build,
+            tests: Some(count as f64),
+            trace: Box::new(|rays, hits| each(&plain, rays, hits)),
+        },
+        Contestant {
+            name: "index halves",
+            ours: false,
+            rays: all,
+            build: build_halving,
+            tests: Some(tests),
+            trace: Box::new(|rays, hits| each(&by_halves, rays, hits)),
+        },
+        Contestant {
+            name: "ours",
+            ours: true,
+            rays: all,
+            build: build_tree,
+            tests: None,
+            trace: Box::new(|rays, hits| each(&one_by_one, rays, hits)),
+        },
+        Contestant {
+            name: "ours, batch",
+            ours: true,
+            rays: all,
+            build: build_tree,
+            tests: None,
+            trace: Box::new(|rays, hits| tree.closest_batch(rays, 0.0..f64::INFINITY, hits)),
+        },
     ];
     let mut times = vec![Vec::new(); methods.len()];
     let mut hits = vec![None; rays.len()];
     let mut different = vec![0; methods.len()];
     for _ in 0..effort.rounds {
-        for (i, (.., rays, _, _, trace)) in methods.iter().enumerate() {
+        for (i, Contestant { rays, trace, .. }) in methods.iter().enumerate() {
             let start = Instant::now();
             trace(black_box(rays), &mut hits[..rays.len()]);
             times[i].push(start.elapsed().as_nanos() as f64 / rays.len() as f64);
@@ -135,10 +157,11 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
         .into_iter()
         .zip(times)
         .zip(different)
-        .map(|(((method, ours, rays, build, tests, _), mut times), different)| {
+        .map(|((contestant, mut times), different)| {
+            let Contestant { name, ours, rays, build, tests, .. } = contestant;
             times.sort_by(f64::total_cmp);
             Growth {
-                method: method.to_owned(),
+                method: name.to_owned(),
                 ours,
                 spheres: count,
                 rays: rays.len(),
