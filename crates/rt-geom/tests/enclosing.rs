@@ -412,3 +412,71 @@ fn every_class_is_enclosed_exactly_and_minimally() {
     println!("p99 {p99:e}, worst {worst:e}");
     assert!(p99 <= 2.3e-16 && worst <= 1e-14, "{p99:e} {worst:e}");
 }
+
+/// The radius that doubles cannot go below: the certified bound, and what rounding the center costs.
+fn slack(answer: &Enclosing) -> f64 {
+    let spacing = answer.sphere.center().abs().max_element() * f64::EPSILON;
+    2.0 * f64::EPSILON * answer.sphere.radius() + spacing
+}
+
+#[test]
+fn the_order_of_the_spheres_does_not_matter() {
+    for (class, make) in CLASSES {
+        let mut random = Random(11);
+        for _ in 0..100 {
+            let mut spheres = make(&mut random);
+            let Some(first) = enclosing_sphere(&spheres) else { continue };
+            random.shuffle(&mut spheres);
+            let second = enclosing_sphere(&spheres).expect("order does not matter");
+            let (a, b) = (first.sphere.radius(), second.sphere.radius());
+            let limit =
+                2.0 * f64::EPSILON * a.min(b) + if *class == "far offset" { 0.0 } else { slack(&first) };
+            assert!((a - b).abs() <= limit, "{class}: {a} {b} {spheres:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sphere_outside_of_the_support_can_go() {
+    for (class, make) in CLASSES {
+        let mut random = Random(13);
+        for _ in 0..100 {
+            let mut spheres = make(&mut random);
+            let Some(first) = enclosing_sphere(&spheres) else { continue };
+            let Some(out) = (0..spheres.len()).find(|index| !first.support().contains(index)) else {
+                continue;
+            };
+            spheres.remove(out);
+            let second = enclosing_sphere(&spheres).expect("fewer spheres");
+            let (a, b) = (first.sphere.radius(), second.sphere.radius());
+            assert!((a - b).abs() <= slack(&first), "{class}: {a} {b} without {out} {spheres:?}");
+        }
+    }
+}
+
+#[test]
+fn large_sets_are_enclosed_and_minimal() {
+    let mut random = Random(17);
+    for (count, duplicates) in [(2049, 0), (5000, 0), (10_000, 4999), (70_000, 0)] {
+        let mut spheres: Vec<Sphere> =
+            (0..count).map(|_| sphere(random.direction(), 0.01 * random.unit())).collect();
+        let same = spheres[0];
+        spheres[..duplicates * 2].fill(same);
+        let answer = enclosing_sphere(&spheres).expect("finite");
+        for inner in &spheres {
+            let rough = (inner.center() - answer.sphere.center()).length() + inner.radius();
+            if rough > answer.sphere.radius() * (1.0 - 1e-14) {
+                assert!(contains(&answer.sphere, inner), "{inner:?} sticks out of {answer:?}");
+            }
+        }
+        assert!(answer.sphere.radius() - answer.lower_bound <= 1e-15 * answer.sphere.radius(), "{answer:?}");
+    }
+}
+
+#[test]
+fn no_finite_sphere_encloses_the_ends_of_the_range() {
+    let far = sphere(DVec3::splat(f64::MAX), f64::MAX);
+    assert!(enclosing_sphere(&[far, sphere(-DVec3::splat(f64::MAX), f64::MAX)]).is_none());
+    assert!(enclosing_sphere(&[]).is_none());
+    assert_eq!(enclosing_sphere(&[far]).expect("itself").sphere, far);
+}

@@ -88,6 +88,7 @@ impl<T: Real> Tangent<T> {
 
     /// Solves for the center and the radius. False if no sphere was found that all touch from inside; then the
     /// numbers mean nothing. Coordinates of the center may be negative.
+    #[inline(always)]
     fn solve(&mut self, spheres: &[Sphere]) -> bool {
         let base = &spheres[self.index[0]];
         let (c0, r0) = (base.center(), base.radius());
@@ -174,13 +175,15 @@ impl<T: Real> Tangent<T> {
         dot(from, from).sqrt() + (T::from(sphere.radius()) - radius)
     }
 
-    /// Returns the minimal sphere of these spheres and one more that sticks out of theirs.
+    /// Becomes the minimal sphere of these spheres and one more that sticks out of theirs.
     ///
     /// Drops what the signs of the coordinates say must go, checks that what was dropped lies inside, and otherwise
     /// tries all subsets.
     #[inline(never)]
-    pub(super) fn with(&self, index: usize, spheres: &[Sphere]) -> Self {
-        let mut next = *self;
+    pub(super) fn add(&mut self, index: usize, spheres: &[Sphere]) {
+        let (old, old_len) = (self.index, self.len);
+        let radius = |of: &Self| of.rho + T::from(spheres[of.index[0]].radius());
+        let old_radius = radius(self);
         let mut dropped = [index; 4];
         let mut drops = 0;
         if self.len == 4 {
@@ -200,49 +203,47 @@ impl<T: Real> Tangent<T> {
                     (out, some) = (place, true);
                 }
             }
-            dropped[0] = next.remove(out, spheres);
+            dropped[0] = self.remove(out, spheres);
             drops = 1;
         }
-        next.push(index, spheres);
-        loop {
-            if !next.solve(spheres) {
-                return self.best_subset(index, spheres);
+        self.push(index, spheres);
+        let solved = loop {
+            if !self.solve(spheres) {
+                break false;
             }
-            let Some(place) = next.most_negative(index) else { break };
-            dropped[drops] = next.remove(place, spheres);
+            let Some(place) = self.most_negative(index) else { break true };
+            dropped[drops] = self.remove(place, spheres);
             drops += 1;
+        };
+        let good = solved
+            && old_radius.below(radius(self))
+            && dropped[..drops]
+                .iter()
+                .all(|&out| self.excess(&spheres[out], spheres).below(radius(self) * T::from(T::INSIDE)));
+        if !good {
+            *self = Self::best_subset(&old[..old_len], index, spheres);
         }
-        let radius = |of: &Self| of.rho + T::from(spheres[of.index[0]].radius());
-        if !radius(self).below(radius(&next)) {
-            return self.best_subset(index, spheres);
-        }
-        for &out in &dropped[..drops] {
-            if !next.excess(&spheres[out], spheres).below(radius(&next) * T::from(T::INSIDE)) {
-                return self.best_subset(index, spheres);
-            }
-        }
-        next
     }
 
     /// Returns the minimal sphere of these spheres and one more: of all subsets with the new one, the one whose
     /// sphere, grown until it encloses all, is smallest.
     #[cold]
     #[inline(never)]
-    fn best_subset(&self, index: usize, spheres: &[Sphere]) -> Self {
+    fn best_subset(old: &[usize], index: usize, spheres: &[Sphere]) -> Self {
         let mut best = Self::single(index);
-        let mut least = self.grown(&best, index, spheres);
-        for mask in 1_u32..1 << self.len {
+        let mut least = best.grown(old, index, spheres);
+        for mask in 1_u32..1 << old.len() {
             if mask.count_ones() == 4 {
                 continue;
             }
             let mut subset = Self::single(index);
-            for place in 0..self.len {
+            for (place, &other) in old.iter().enumerate() {
                 if mask >> place & 1 == 1 {
-                    subset.push(self.index[place], spheres);
+                    subset.push(other, spheres);
                 }
             }
             if subset.solve(spheres) {
-                let grown = self.grown(&subset, index, spheres);
+                let grown = subset.grown(old, index, spheres);
                 if grown.below(least) {
                     (best, least) = (subset, grown);
                 }
@@ -251,16 +252,16 @@ impl<T: Real> Tangent<T> {
         best
     }
 
-    /// The radius that `candidate` needs around its center to enclose these spheres and one more.
-    fn grown(&self, candidate: &Self, index: usize, spheres: &[Sphere]) -> T {
+    /// The radius that encloses `old` and one more around this center.
+    fn grown(&self, old: &[usize], index: usize, spheres: &[Sphere]) -> T {
         let mut excess = T::ZERO;
-        for &sphere in self.support().iter().chain([&index]) {
-            let sticks_out = candidate.excess(&spheres[sphere], spheres);
+        for &other in old.iter().chain([&index]) {
+            let sticks_out = self.excess(&spheres[other], spheres);
             if excess.below(sticks_out) {
                 excess = sticks_out;
             }
         }
-        candidate.rho + T::from(spheres[candidate.index[0]].radius()) + excess
+        self.rho + T::from(spheres[self.index[0]].radius()) + excess
     }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn pivot<S: Simd, const VECTORS: usize>(
                 if measure <= radius * radius * TOUCHES || tangent.support().contains(&far) {
                     break;
                 }
-                tangent = tangent.with(far, spheres);
+                tangent.add(far, spheres);
             }
             tangent
         },

@@ -45,14 +45,22 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
         Self { vectors, used, count }
     }
 
-    /// The largest reach from the origin.
+    /// The sphere that reaches farthest from the origin, and how far, up to the six lowest bits.
     #[inline(always)]
-    pub(super) fn reach(&self, simd: S) -> f64 {
+    pub(super) fn farthest_from_origin(&self, simd: S) -> (usize, f64) {
         let mut most = f64x8::splat(simd, 0.0);
+        let mut lane = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
         for [x, y, z, r] in &self.vectors[..self.used] {
-            most = most.max((*x * *x + *y * *y + *z * *z).sqrt() + *r);
+            // An infinite reach with a mark would be no number.
+            let reach = ((*x * *x + *y * *y + *z * *z).sqrt() + *r).min(f64x8::splat(simd, f64::MAX));
+            let bits: u64x8<S> = reach.bitcast();
+            let marked: f64x8<S> = ((bits & !63) | lane).bitcast();
+            most = most.max(marked);
+            lane += LANES as u64;
         }
-        most.reduce_max()
+        let most = most.reduce_max();
+        let lane = (most.to_bits() & 63) as usize;
+        (if lane < self.count { lane } else { 0 }, most)
     }
 
     /// Returns the sphere that sticks out farthest of the one around `center`, and a measure of how far: positive if

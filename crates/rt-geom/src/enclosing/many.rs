@@ -3,6 +3,7 @@
 use fearless_simd::Simd;
 use glam::DVec3;
 
+use super::ORDINARY;
 use super::basis::Tangent;
 use super::certify::U;
 use super::few::pivot;
@@ -15,6 +16,14 @@ const BLOCK: usize = 64;
 /// How many spheres the small solver takes.
 const FEW: usize = 64;
 
+/// Of large sets every so many-th sphere is a set to solve first.
+const SAMPLE: usize = 32;
+
+/// Places spread evenly over a set.
+fn spread(count: usize) -> [usize; FEW] {
+    std::array::from_fn(|i| i * count / FEW)
+}
+
 /// The largest reach of each block, at the time of its last scan.
 pub(super) struct Blocks {
     /// The reach less the length of the way that the center had come by then.
@@ -25,24 +34,69 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// Finds the support of a set of more than a handful of spheres.
+    /// Finds the support of a set of more than a handful of spheres; `None` if its extent is out of the ordinary range.
     ///
     /// Solves a sample first. Then, in turn: every block that may stick out is scanned, the farthest sphere of each
     /// (of those that stick out farthest, if there are many) joins the support, and the minimal sphere of these
     /// takes the place of the last.
     #[inline(always)]
-    pub(super) fn support<S: Simd>(simd: S, spheres: &[Sphere], origin: DVec3) -> (Tangent<f64>, Self) {
-        let stride = spheres.len() / FEW;
-        let sample: [usize; FEW] = std::array::from_fn(|i| i * stride);
-        let mut tangent = among(simd, &Tangent::single(0), &sample, spheres, origin);
+    pub(super) fn support<S: Simd>(
+        simd: S,
+        spheres: &[Sphere],
+        origin: DVec3,
+    ) -> Option<(Tangent<f64>, Self)> {
+        let mut start = spread(spheres.len());
+        let mut count = FEW;
+        if spheres.len() > FEW * SAMPLE {
+            let sample: Vec<Sphere> = spheres.iter().step_by(SAMPLE).copied().collect();
+            // (Of a sample that is a single point nothing can be learned.)
+            if let Some((tangent, _)) = Self::rounds(simd, &sample, origin, &spread(sample.len())) {
+                count = tangent.support().len();
+                for (index, &at) in start.iter_mut().zip(tangent.support()) {
+                    *index = at * SAMPLE;
+                }
+            }
+        }
+        Self::rounds(simd, spheres, origin, &start[..count])
+    }
+
+    /// The support of the whole set, given where to look first.
+    #[inline(always)]
+    fn rounds<S: Simd>(
+        simd: S,
+        spheres: &[Sphere],
+        origin: DVec3,
+        start: &[usize],
+    ) -> Option<(Tangent<f64>, Self)> {
+        simd.vectorize(
+            #[inline(always)]
+            || Self::rounds_here(simd, spheres, origin, start),
+        )
+    }
+
+    #[inline(always)]
+    fn rounds_here<S: Simd>(
+        simd: S,
+        spheres: &[Sphere],
+        origin: DVec3,
+        start: &[usize],
+    ) -> Option<(Tangent<f64>, Self)> {
+        let mut tangent = among(simd, &Tangent::single(start[0]), start, spheres, origin);
         let (center, _) = tangent.sphere(spheres, origin);
         let count = spheres.len().div_ceil(BLOCK);
         let mut blocks = Self { reach: vec![f64::INFINITY; count], way: 0.0, center };
         let mut out: Vec<(f64, usize)> = Vec::new();
-        for _ in 0..MAX_ROUNDS {
+        for round in 0..MAX_ROUNDS {
             let (center, radius) = tangent.sphere(spheres, origin);
             let limit = radius * (1.0 + 16.0 * U);
             blocks.scan(spheres, origin, center, limit, &mut out);
+            if round == 0 {
+                let most = blocks.reach.iter().fold(0.0, |most, &reach| f64::max(most, reach));
+                let far = DVec3::from(center).length();
+                if !ORDINARY.contains(&most) || !ORDINARY.contains(&(most + far)) {
+                    return None;
+                }
+            }
             if out.is_empty() {
                 break;
             }
@@ -50,21 +104,21 @@ impl Blocks {
             if out.len() > take {
                 out.select_nth_unstable_by(take, |a, b| b.0.total_cmp(&a.0));
             }
-            let mut among_these = [tangent.support()[0]; FEW];
+            let mut these = [0; FEW];
             let support = tangent.support();
-            among_these[..support.len()].copy_from_slice(support);
-            for (slot, &(reach, block)) in among_these[support.len()..].iter_mut().zip(&out[..take]) {
+            these[..support.len()].copy_from_slice(support);
+            for (slot, &(reach, block)) in these[support.len()..].iter_mut().zip(&out[..take]) {
                 *slot = find(spheres, block, origin, center, reach);
             }
             let all = support.len() + take;
-            let next = among(simd, &tangent, &among_these[..all], spheres, origin);
+            let next = among(simd, &tangent, &these[..all], spheres, origin);
             let grows = next.sphere(spheres, origin).1 > radius;
             if !grows {
                 break;
             }
             tangent = next;
         }
-        (tangent, blocks)
+        Some((tangent, blocks))
     }
 
     /// Scans the blocks that may reach beyond `limit` from `center`, and lists those that do.
@@ -148,12 +202,6 @@ fn reach(sphere: &Sphere, origin: DVec3, center: [f64; 3]) -> f64 {
     let (x, y, z) =
         ((c.x - origin.x) - center[0], (c.y - origin.y) - center[1], (c.z - origin.z) - center[2]);
     (x * x + y * y + z * z).sqrt() + sphere.radius()
-}
-
-/// The largest reach from `origin` of all spheres, or infinity or NaN if that over- or underflows.
-#[inline(always)]
-pub(super) fn reach_from(spheres: &[Sphere], origin: DVec3) -> f64 {
-    farthest(spheres, origin, [0.0; 3])
 }
 
 /// The largest reach of a block. Plain code that the compiler turns into vectors.

@@ -135,11 +135,10 @@ fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<E
 fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
     let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
-    let reach = lanes.reach(simd);
+    let (far, reach) = lanes.farthest_from_origin(simd);
     if !ORDINARY.contains(&reach) {
         return extreme(spheres);
     }
-    let far = lanes.farthest(simd, [0.0; 3], reach).0;
     let tangent =
         few::pivot(simd, &Tangent::single(far), &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
     let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
@@ -180,10 +179,7 @@ const IN_ORDER: [usize; 8 * LANES] = {
 #[inline(always)]
 fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
-    if !ORDINARY.contains(&many::reach_from(spheres, origin)) {
-        return extreme(spheres);
-    }
-    let (tangent, blocks) = Blocks::support(simd, spheres, origin);
+    let Some((tangent, blocks)) = Blocks::support(simd, spheres, origin) else { return extreme(spheres) };
     let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
     let (center, limit) = near(&tangent, &bracket, spheres, origin);
     let before = bracket.high;
@@ -269,6 +265,42 @@ mod tests {
     #[test]
     fn nothing_has_no_enclosing_sphere() {
         assert!(enclosing_sphere(&[]).is_none());
+    }
+
+    #[test]
+    fn every_level_gives_the_same_bits() {
+        let mut state = 1_u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 * (-53.0_f64).exp2()
+        };
+        for count in [2, 3, 8, 9, 64, 65, 3000] {
+            for round in 0..200 {
+                let grid = if round % 2 == 0 { 1e9 } else { 4.0 };
+                let set: Vec<_> = (0..count)
+                    .map(|_| ball((unit() * grid).round(), (unit() * grid).round(), unit() * grid, unit()))
+                    .collect();
+                let best = enclosing_at(Level::new(), &set);
+                let mut levels = vec![Level::baseline()];
+                #[cfg(target_arch = "x86_64")]
+                levels.extend(Level::new().as_avx2().map(Level::Avx2));
+                for level in levels {
+                    assert_eq!(enclosing_at(level, &set), best, "{level:?} {set:?}");
+                }
+                if count > 64 && round == 9 {
+                    break;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_stay_whole() {
+        // Only exact integers can tell that 2 encloses and that no larger double is needed.
+        let pair = [ball(-1.0, 0.0, 0.0, 1.0), ball(1.0, 0.0, 0.0, 1.0)];
+        assert_eq!(enclosing_sphere(&pair).unwrap().sphere, ball(0.0, 0.0, 0.0, 2.0));
+        let five = [ball(3.0, 4.0, 0.0, 0.0), ball(-5.0, 0.0, 0.0, 0.0), ball(4.0, -3.0, 0.0, 0.0)];
+        assert_eq!(enclosing_sphere(&five).unwrap().sphere.radius(), 5.0);
     }
 
     #[test]

@@ -123,11 +123,10 @@ impl Builder<'_> {
     fn solve<S: Simd, const VECTORS: usize>(&self, simd: S, these: &[usize]) -> Option<Tangent<f64>> {
         let origin = self.leaves[these[0]].center();
         let lanes = Lanes::<S, VECTORS>::new(simd, these.iter().map(|&index| &self.leaves[index]), origin);
-        let reach = lanes.reach(simd);
+        let (far, reach) = lanes.farthest_from_origin(simd);
         if !ORDINARY.contains(&reach) {
             return None;
         }
-        let far = lanes.farthest(simd, [0.0; 3], reach).0;
         Some(pivot(simd, &Tangent::single(these[far]), &lanes, these, self.leaves, origin))
     }
 

@@ -20,15 +20,15 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
     for _ in 0..MAX_PIVOTS {
         // The farthest of a few first: the support of the fast path.
         let Some(far) = farthest(&tangent, spheres, start.iter().copied()) else { break };
-        tangent = tangent.with(far, spheres);
+        tangent.add(far, spheres);
     }
     let mut stalled = 0;
     for _ in 0..MAX_PIVOTS {
         let Some(far) = farthest(&tangent, spheres, 0..spheres.len()) else { break };
-        let next = tangent.with(far, spheres);
         let radius = |tangent: &Tangent<Wide>| tangent.sphere(spheres, DVec3::ZERO).1;
-        stalled = if radius(&tangent).below(radius(&next)) { 0 } else { stalled + 1 };
-        tangent = next;
+        let before = radius(&tangent);
+        tangent.add(far, spheres);
+        stalled = if before.below(radius(&tangent)) { 0 } else { stalled + 1 };
         if stalled == 3 {
             break;
         }

@@ -1,0 +1,89 @@
+//! The minimal sphere of spheres beside the usual approximations: Ritter's sphere and merging in sequence.
+//!
+//! Ritter's is a few percent too large, merging in sequence some twenty. `benches/peers/enclosing` has CGAL beside it.
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use glam::DVec3;
+use rt_geom::{Sphere, enclosing_sphere};
+
+/// Even numbers in 0..1: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 * (-53.0_f64).exp2()
+    }
+}
+
+fn spheres(count: usize, random: &mut Random) -> Vec<Sphere> {
+    let largest = 0.5 / (count as f64).cbrt();
+    (0..count)
+        .map(|_| {
+            let center = DVec3::new(random.unit(), random.unit(), random.unit());
+            Sphere::new(center, largest * random.unit()).expect("finite")
+        })
+        .collect()
+}
+
+/// The smallest sphere around two.
+fn merge(a: (DVec3, f64), b: (DVec3, f64)) -> (DVec3, f64) {
+    let way = b.0 - a.0;
+    let length = way.length();
+    if length + b.1 <= a.1 {
+        return a;
+    }
+    if length + a.1 <= b.1 {
+        return b;
+    }
+    let radius = 0.5 * (length + a.1 + b.1);
+    (a.0 + way * ((radius - a.1) / length), radius)
+}
+
+fn sphere(s: &Sphere) -> (DVec3, f64) {
+    (s.center(), s.radius())
+}
+
+fn merge_in_sequence(spheres: &[Sphere]) -> (DVec3, f64) {
+    spheres[1..].iter().fold(sphere(&spheres[0]), |merged, next| merge(merged, sphere(next)))
+}
+
+/// J. Ritter, "An efficient bounding sphere", Graphics Gems, 1990, for spheres: two far ones, then whatever sticks out.
+fn ritter(spheres: &[Sphere]) -> (DVec3, f64) {
+    let farthest = |from: DVec3| {
+        let reach = |s: &Sphere| (s.center() - from).length() + s.radius();
+        spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).expect("not empty")
+    };
+    let one = farthest(spheres[0].center());
+    let other = farthest(one.center());
+    spheres.iter().fold(merge(sphere(one), sphere(other)), |merged, next| merge(merged, sphere(next)))
+}
+
+fn enclosing(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("enclosing_sphere");
+    for count in [2, 8, 64, 1000, 100_000, 1_000_000] {
+        let mut random = Random(count as u64);
+        let sets: Vec<Vec<Sphere>> =
+            (0..(100_000 / count).clamp(1, 1000)).map(|_| spheres(count, &mut random)).collect();
+        group.throughput(Throughput::Elements((sets.len() * count) as u64));
+        group.sample_size(10);
+        group.bench_function(BenchmarkId::new("minimal", count), |bencher| {
+            bencher.iter(|| sets.iter().for_each(|set| drop(black_box(enclosing_sphere(black_box(set))))));
+        });
+        group.bench_function(BenchmarkId::new("ritter", count), |bencher| {
+            bencher.iter(|| sets.iter().for_each(|set| drop(black_box(ritter(black_box(set))))));
+        });
+        group.bench_function(BenchmarkId::new("merge_in_sequence", count), |bencher| {
+            bencher.iter(|| sets.iter().for_each(|set| drop(black_box(merge_in_sequence(black_box(set))))));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, enclosing);
+criterion_main!(benches);
