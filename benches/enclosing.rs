@@ -64,6 +64,13 @@ fn ritter(spheres: &[Sphere]) -> (DVec3, f64) {
     spheres.iter().fold(merge(sphere(one), sphere(other)), |merged, next| merge(merged, sphere(next)))
 }
 
+/// Runs a method on every set.
+fn each<T>(sets: &[Vec<Sphere>], method: impl Fn(&[Sphere]) -> T) {
+    for set in sets {
+        black_box(method(black_box(set)));
+    }
+}
+
 fn enclosing(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("enclosing_sphere");
     for count in [2, 8, 64, 1000, 100_000, 1_000_000] {
@@ -73,13 +80,13 @@ fn enclosing(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements((sets.len() * count) as u64));
         group.sample_size(10);
         group.bench_function(BenchmarkId::new("minimal", count), |bencher| {
-            bencher.iter(|| sets.iter().for_each(|set| drop(black_box(enclosing_sphere(black_box(set))))));
+            bencher.iter(|| each(&sets, enclosing_sphere));
         });
         group.bench_function(BenchmarkId::new("ritter", count), |bencher| {
-            bencher.iter(|| sets.iter().for_each(|set| drop(black_box(ritter(black_box(set))))));
+            bencher.iter(|| each(&sets, ritter));
         });
         group.bench_function(BenchmarkId::new("merge_in_sequence", count), |bencher| {
-            bencher.iter(|| sets.iter().for_each(|set| drop(black_box(merge_in_sequence(black_box(set))))));
+            bencher.iter(|| each(&sets, merge_in_sequence));
         });
     }
     group.finish();

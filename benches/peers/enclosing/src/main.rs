@@ -64,10 +64,21 @@ fn cgal(run: unsafe extern "C" fn(*const f64, usize, *mut f64), set: &[f64]) -> 
 
 fn main() {
     let only: Option<usize> = std::env::args().nth(1).and_then(|n| n.parse().ok());
-    println!("{:>8} {:>6} {:>12} {:>12} {:>12} {:>8} {:>8}", "n", "kind", "CGAL", "no roots", "ours", "ratio", "ratio");
-    for (n, sets, rounds) in
-        [(2, 4096, 300), (3, 4096, 200), (4, 4096, 200), (8, 4096, 100), (16, 2048, 100), (64, 1024, 100), (1000, 64, 100), (100_000, 1, 60), (1_000_000, 1, 20)]
-    {
+    println!(
+        "{:>8} {:>6} {:>12} {:>12} {:>12} {:>8} {:>8}",
+        "n", "kind", "CGAL", "no roots", "ours", "ratio", "ratio"
+    );
+    for (n, sets, rounds) in [
+        (2, 4096, 300),
+        (3, 4096, 200),
+        (4, 4096, 200),
+        (8, 4096, 100),
+        (16, 2048, 100),
+        (64, 1024, 100),
+        (1000, 64, 100),
+        (100_000, 1, 60),
+        (1_000_000, 1, 20),
+    ] {
         if only.is_some_and(|only| only != n) {
             continue;
         }
@@ -91,9 +102,15 @@ fn main() {
                     let start = Instant::now();
                     for (ours, flat) in ours.iter().zip(&flat) {
                         match contestant {
-                            0 => drop(black_box(cgal(cgal_farthest_first, flat))),
-                            1 => drop(black_box(cgal(cgal_farthest_first_no_roots, flat))),
-                            _ => drop(black_box(enclosing_sphere(ours))),
+                            0 => {
+                                black_box(cgal(cgal_farthest_first, flat));
+                            }
+                            1 => {
+                                black_box(cgal(cgal_farthest_first_no_roots, flat));
+                            }
+                            _ => {
+                                black_box(enclosing_sphere(ours));
+                            }
                         }
                     }
                     *best = best.min(start.elapsed().as_secs_f64() / sets as f64 * 1e9);
@@ -101,7 +118,11 @@ fn main() {
             }
             let [roots, none, own] = best;
             let kind = format!("{kind:?}");
-            println!("{n:8} {kind:>6} {roots:9.0} ns {none:9.0} ns {own:9.0} ns {:8.2} {:8.2}", roots / own, none / own);
+            println!(
+                "{n:8} {kind:>6} {roots:9.0} ns {none:9.0} ns {own:9.0} ns {:8.2} {:8.2}",
+                roots / own,
+                none / own
+            );
         }
     }
 }
