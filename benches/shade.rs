@@ -64,7 +64,7 @@ fn texture_coordinates(criterion: &mut Criterion) {
         });
     };
     bench("textbook", textbook_uv);
-    bench("ours", |normal| sphere_uv(normal));
+    bench("ours", sphere_uv);
     bench("textbook_normalized", normalized_uv);
     bench("pxfm_atan2pi", pxfm_uv);
     bench("ours_out_of_range", |normal| sphere_uv(normal * 1e-300));
