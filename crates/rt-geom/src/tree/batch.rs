@@ -88,11 +88,12 @@ struct Survivors {
 
 /// Casts all rays and hands each answer to `answer`, in no particular order.
 #[inline(always)]
-pub(super) fn fly<S: Simd, const ANY: bool>(
+pub(super) fn fly<S: Simd>(
     simd: S,
     tree: &SphereTree,
     rays: &[Ray],
     within: &Range<f64>,
+    any: bool,
     mut answer: impl FnMut(usize, Option<Hit>),
 ) {
     let Some(root) = tree.root else {
@@ -117,7 +118,7 @@ pub(super) fn fly<S: Simd, const ANY: bool>(
             for i in 0..len {
                 let (place, at) = (survivors.places[i] as usize, survivors.slots[i] as usize);
                 let slot = &mut slots[at];
-                if !(ANY && slot.best.exists()) {
+                if !(any && slot.best.exists()) {
                     let (bounds, place) = if kind == SPHERES {
                         (tree.spheres[place].candidate(&slot.ray, slot.best.limit()), place)
                     } else {
@@ -137,7 +138,7 @@ pub(super) fn fly<S: Simd, const ANY: bool>(
         for &at in &resumed[..len] {
             let slot = &mut slots[usize::from(at)];
             slot.line.shorten(slot.best.limit());
-            if ANY && slot.best.exists() {
+            if any && slot.best.exists() {
                 slot.height = 0;
             }
             next(slot, usize::from(at), tree, &areas, &mut lists);
@@ -191,7 +192,7 @@ pub(super) fn fly<S: Simd, const ANY: bool>(
         let (done, len) = lists.take(DONE);
         for &at in &done[..len] {
             let slot = &mut slots[usize::from(at)];
-            if ANY {
+            if any {
                 answer(slot.target, slot.best.exists().then_some(Hit { index: 0, t: 0.0 }));
             } else {
                 answer(slot.target, slot.best.hit(tree, &slot.ray));

@@ -244,24 +244,24 @@ impl SphereTree {
 
     /// Returns the closest hit with its `t` in the range: the smallest `t`, and of equal `t` the lowest index.
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<Hit> {
-        self.query::<false, false>(ray, within, &mut Visits::default())
+        self.query(ray, within, &mut Visits::default())
     }
 
     /// As [`closest`](Self::closest), with what the query did.
     pub fn closest_counted(&self, ray: &Ray, within: Range<f64>) -> (Option<Hit>, Visits) {
         let mut visits = Visits::default();
-        (self.query::<false, true>(ray, within, &mut visits), visits)
+        (self.query(ray, within, &mut visits), visits)
     }
 
     /// Returns whether anything is hit with its `t` in the range.
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        self.query_any::<false>(ray, within, &mut Visits::default())
+        self.query_any(ray, within, &mut Visits::default())
     }
 
     /// As [`any`](Self::any), with what the query did.
     pub fn any_counted(&self, ray: &Ray, within: Range<f64>) -> (bool, Visits) {
         let mut visits = Visits::default();
-        (self.query_any::<true>(ray, within, &mut visits), visits)
+        (self.query_any(ray, within, &mut visits), visits)
     }
 
     /// Writes the closest hit of each ray.
@@ -276,7 +276,7 @@ impl SphereTree {
             }
             return;
         }
-        dispatch!(self.level, simd => fly::<_, false>(simd, self, rays, &within, |i, hit| hits[i] = hit));
+        self.fly(rays, &within, false, &mut |i, hit| hits[i] = hit);
     }
 
     /// Writes for each ray whether it hits anything.
@@ -291,49 +291,41 @@ impl SphereTree {
             }
             return;
         }
-        dispatch!(self.level, simd => fly::<_, true>(simd, self, rays, &within, |i, hit| hits[i] = hit.is_some()));
+        self.fly(rays, &within, true, &mut |i, hit| hits[i] = hit.is_some());
     }
 
-    #[inline(always)]
-    fn query<const ANY: bool, const COUNT: bool>(
-        &self,
-        ray: &Ray,
-        within: Range<f64>,
-        visits: &mut Visits,
-    ) -> Option<Hit> {
+    fn query(&self, ray: &Ray, within: Range<f64>, visits: &mut Visits) -> Option<Hit> {
         if !is_open(&within) {
             return None;
         }
         let prepared = PreparedRay::new(ray, within);
-        let best = self.find::<ANY, COUNT>(&prepared, visits)?;
-        best.hit(self, &prepared)
+        self.find(&prepared, false, visits).hit(self, &prepared)
     }
 
-    #[inline(always)]
-    fn query_any<const COUNT: bool>(&self, ray: &Ray, within: Range<f64>, visits: &mut Visits) -> bool {
-        is_open(&within)
-            && self
-                .find::<true, COUNT>(&PreparedRay::new(ray, within), visits)
-                .is_some_and(|best| best.exists())
+    fn query_any(&self, ray: &Ray, within: Range<f64>, visits: &mut Visits) -> bool {
+        is_open(&within) && self.find(&PreparedRay::new(ray, within), true, visits).exists()
     }
 
-    #[inline(always)]
-    fn find<const ANY: bool, const COUNT: bool>(
-        &self,
-        ray: &PreparedRay,
-        visits: &mut Visits,
-    ) -> Option<Best> {
-        dispatch!(self.level, simd => {
-            let mut line = Line::EVERYTHING;
-            if !line.set(&self.frame, ray) {
-                return None;
-            }
-            if self.stack <= STACK {
-                Some(walk::<_, ANY, COUNT>(simd, self, ray, line, &mut [0; STACK], visits))
-            } else {
-                Some(walk::<_, ANY, COUNT>(simd, self, ray, line, &mut vec![0; self.stack], visits))
-            }
-        })
+    #[inline(never)]
+    fn find(&self, ray: &PreparedRay, any: bool, visits: &mut Visits) -> Best {
+        let mut line = Line::EVERYTHING;
+        if !line.set(&self.frame, ray) {
+            return Best::NONE;
+        }
+        let mut usual = [0; STACK];
+        let mut large = Vec::new();
+        let stack = if self.stack <= STACK {
+            &mut usual[..]
+        } else {
+            large.resize(self.stack, 0);
+            &mut large[..]
+        };
+        dispatch!(self.level, simd => walk(simd, self, ray, any, line, stack, visits))
+    }
+
+    #[inline(never)]
+    fn fly(&self, rays: &[Ray], within: &Range<f64>, any: bool, answer: &mut dyn FnMut(usize, Option<Hit>)) {
+        dispatch!(self.level, simd => fly(simd, self, rays, within, any, answer));
     }
 }
 

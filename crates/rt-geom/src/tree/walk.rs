@@ -127,12 +127,15 @@ impl Best {
     }
 }
 
-/// Finds the closest hit, or with `ANY` some hit.
+/// Finds the closest hit, or with `any` some hit.
+///
+/// Compiled once for each instruction set, so what it is asked for is told by value.
 #[inline(always)]
-pub(super) fn walk<S: Simd, const ANY: bool, const COUNT: bool>(
+pub(super) fn walk<S: Simd>(
     simd: S,
     tree: &SphereTree,
     ray: &PreparedRay,
+    any: bool,
     mut line: Line,
     stack: &mut [Pending],
     visits: &mut Visits,
@@ -145,9 +148,7 @@ pub(super) fn walk<S: Simd, const ANY: bool, const COUNT: bool>(
     loop {
         if at.is_inner() {
             let node = &tree.nodes[at.index()];
-            if COUNT {
-                visits.nodes += 1;
-            }
+            visits.nodes += 1;
             let mut met = meet_boxes(simd, black_box(&line), &node.boxes, &mut keys);
             if met != 0 {
                 let next = |met: &mut u32| {
@@ -200,9 +201,7 @@ pub(super) fn walk<S: Simd, const ANY: bool, const COUNT: bool>(
                 continue;
             }
         } else {
-            if COUNT {
-                visits.leaves += 1;
-            }
+            visits.leaves += 1;
             let before = best.limit();
             let block = at.index();
             if at.kind() == Kind::Spheres {
@@ -210,9 +209,7 @@ pub(super) fn walk<S: Simd, const ANY: bool, const COUNT: bool>(
                 while met != 0 {
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
-                    if COUNT {
-                        visits.tests += 1;
-                    }
+                    visits.tests += 1;
                     if let Some(bounds) = tree.spheres[place].candidate(ray, best.limit()) {
                         best.offer(bounds, place, tree, ray);
                     }
@@ -222,15 +219,13 @@ pub(super) fn walk<S: Simd, const ANY: bool, const COUNT: bool>(
                 while met != 0 {
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
-                    if COUNT {
-                        visits.tests += 1;
-                    }
+                    visits.tests += 1;
                     if let Some(bounds) = tree.triangles[place].candidate(ray, best.limit()) {
                         best.offer(bounds, tree.spheres.len() + place, tree, ray);
                     }
                 }
             }
-            if ANY && best.exists() {
+            if any && best.exists() {
                 return best;
             }
             if best.limit() < before {

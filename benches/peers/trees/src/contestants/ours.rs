@@ -1,0 +1,88 @@
+//! `SphereTree`: one ray at a time and batches of 1024, with the best instruction set and with AVX2 alone.
+//!
+//! Narrowing the answers to f32 and widening the rays to f64 is part of the time.
+
+use glam::DVec3;
+use rt_geom as geom;
+
+use crate::{Contestant, Hit, Ray, Sphere, Tracer};
+
+const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
+const BATCH: usize = 1024;
+
+struct Ours {
+    tree: geom::SphereTree,
+    batch: bool,
+}
+
+fn vector(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
+}
+
+fn widen(ray: &Ray) -> geom::Ray {
+    geom::Ray::new(vector(ray.origin), vector(ray.direction)).expect("rays of the workload are valid")
+}
+
+fn narrow(hit: Option<geom::Hit>) -> Hit {
+    hit.map_or(Hit::MISS, |hit| Hit { t: hit.t as f32, id: hit.index as u32 })
+}
+
+impl Tracer for Ours {
+    fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
+        if !self.batch {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = narrow(self.tree.closest(&widen(ray), AHEAD));
+            }
+            return;
+        }
+        let mut wide = Vec::with_capacity(BATCH);
+        let mut answers = [None; BATCH];
+        for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
+            wide.clear();
+            wide.extend(rays.iter().map(widen));
+            self.tree.closest_batch(&wide, AHEAD, &mut answers[..rays.len()]);
+            for (hit, answer) in hits.iter_mut().zip(answers) {
+                *hit = narrow(answer);
+            }
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray]) -> Option<usize> {
+        if !self.batch {
+            return Some(rays.iter().filter(|ray| self.tree.any(&widen(ray), AHEAD)).count());
+        }
+        let mut wide = Vec::with_capacity(BATCH);
+        let mut answers = [false; BATCH];
+        let mut count = 0;
+        for rays in rays.chunks(BATCH) {
+            wide.clear();
+            wide.extend(rays.iter().map(widen));
+            self.tree.any_batch(&wide, AHEAD, &mut answers[..rays.len()]);
+            count += answers[..rays.len()].iter().filter(|hit| **hit).count();
+        }
+        Some(count)
+    }
+}
+
+pub fn contestants() -> Vec<Contestant> {
+    let row = |name, batch, simd: Option<&'static str>| Contestant {
+        name,
+        camera_only: false,
+        slow: false,
+        build: Box::new(move |spheres: &[Sphere]| {
+            let sphere = |s: &Sphere| geom::Sphere::new(vector([s[0], s[1], s[2]]), f64::from(s[3])).expect("valid");
+            let tree = geom::SphereTree::new(spheres.iter().map(sphere).collect(), Vec::new());
+            let tree = match simd {
+                Some(name) => tree.with_simd(name).expect("this CPU has the instruction set"),
+                None => tree,
+            };
+            Box::new(Ours { tree, batch })
+        }),
+    };
+    vec![
+        row("ours single", false, None),
+        row("ours batch", true, None),
+        row("ours single avx2", false, Some("avx2")),
+        row("ours batch avx2", true, Some("avx2")),
+    ]
+}

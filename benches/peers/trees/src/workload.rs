@@ -1,0 +1,166 @@
+//! The sphere sets and ray sets on which the project and its peers are measured side by side.
+//!
+//! Every coordinate is an f32 value, so single- and double-precision tracers see the same input.
+//! The generators are deterministic: same name, same size, same bits on every machine.
+
+/// `[x, y, z, radius]`
+pub type Sphere = [f32; 4];
+
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    pub origin: [f32; 3],
+    /// Not normalised in every set; never zero.
+    pub direction: [f32; 3],
+}
+
+pub struct SplitMix(pub u64);
+impl SplitMix {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+    /// Uniform in [0, 1), with 24 bits: exact in f32.
+    pub fn unit(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / (1u64 << 24) as f32
+    }
+    pub fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+}
+
+/// Names accepted by [`spheres`].
+pub const SCENES: [&str; 4] = ["uniform", "flake", "packed", "mixed"];
+
+/// All scenes lie in a cube of about side 2 around (0, 0, -3), so the camera
+/// (at the origin, looking down -z, view plane z = -1) sees each of them whole.
+///
+/// - `uniform`: centres uniform in the cube, equal radii, about 10 % of the volume filled.
+/// - `flake`: Haines' sphereflake, nine children per sphere at a third of the radius.
+/// - `packed`: a face-centred lattice with overlapping neighbours, jittered: a molecule's space-filling model.
+/// - `mixed`: centres uniform, radii log-uniform over three decades.
+pub fn spheres(scene: &str, n: usize) -> Vec<Sphere> {
+    let mut rng = SplitMix(0x5EED ^ n as u64);
+    match scene {
+        "uniform" => {
+            // n * 4/3 pi r^3 = 0.1 * 8
+            let r = (0.8 / (n as f32 * 4.188_790_3)).cbrt();
+            (0..n).map(|_| [rng.signed(), rng.signed(), rng.signed() - 3.0, r]).collect()
+        }
+        "flake" => flake(n),
+        "packed" => {
+            let per_side = ((n as f32 / 4.0).cbrt().ceil() as usize).max(1);
+            let cell = 2.0 / per_side as f32;
+            let r = cell * 0.42;
+            let mut out = Vec::with_capacity(n);
+            'fill: for i in 0..per_side {
+                for j in 0..per_side {
+                    for k in 0..per_side {
+                        for b in [[0.0f32, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]] {
+                            if out.len() == n {
+                                break 'fill;
+                            }
+                            let p = |g: usize, o: f32, j: f32| (g as f32 + o + 0.1 * j) * cell - 1.0;
+                            out.push([
+                                p(i, b[0], rng.signed()),
+                                p(j, b[1], rng.signed()),
+                                p(k, b[2], rng.signed()) - 3.0,
+                                r,
+                            ]);
+                        }
+                    }
+                }
+            }
+            // Input order is random, so a tree that halves by index gets no free locality.
+            for i in (1..out.len()).rev() {
+                let j = (rng.next() % (i as u64 + 1)) as usize;
+                out.swap(i, j);
+            }
+            out
+        }
+        "mixed" => (0..n)
+            .map(|_| {
+                let r = 0.2 * (n as f32).cbrt().recip() * 10f32.powf(1.5 * rng.signed());
+                [rng.signed(), rng.signed(), rng.signed() - 3.0, r]
+            })
+            .collect(),
+        other => panic!("no scene {other}"),
+    }
+}
+
+fn flake(n: usize) -> Vec<Sphere> {
+    // Breadth first: each sphere carries an orthonormal frame whose z points away from its parent.
+    struct Node {
+        c: [f64; 3],
+        r: f64,
+        z: [f64; 3],
+    }
+    let mut queue = std::collections::VecDeque::from([Node { c: [0.0, 0.0, -3.0], r: 0.5, z: [0.0, 0.0, 1.0] }]);
+    let mut out = Vec::with_capacity(n);
+    while out.len() < n {
+        let Some(Node { c, r, z }) = queue.pop_front() else { break };
+        out.push([c[0] as f32, c[1] as f32, c[2] as f32, r as f32]);
+        if queue.len() + out.len() > 2 * n + 16 {
+            continue;
+        }
+        let a = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let x = norm(cross(a, z));
+        let y = cross(z, x);
+        for k in 0..9 {
+            let (elev, turn): (f64, f64) = if k < 6 {
+                (0.0, k as f64 * std::f64::consts::FRAC_PI_3)
+            } else {
+                (0.955_316_618, (k - 6) as f64 * 2.0 * std::f64::consts::FRAC_PI_3 + 0.523_598_776)
+            };
+            let d: [f64; 3] = std::array::from_fn(|i| {
+                elev.cos() * (turn.cos() * x[i] + turn.sin() * y[i]) + elev.sin() * z[i]
+            });
+            let rr = r / 3.0;
+            queue.push_back(Node { c: std::array::from_fn(|i| c[i] + (r + rr) * d[i]), r: rr, z: d });
+        }
+    }
+    out
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+fn norm(a: [f64; 3]) -> [f64; 3] {
+    let l = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt();
+    a.map(|v| v / l)
+}
+
+/// Primary rays of the camera, `side` x `side`, scan order: eye at the origin, plane z = -1,
+/// half-width 0.5 so that the cube fills the view. Directions are not normalised (z = -1).
+pub fn camera_rays(side: usize) -> Vec<Ray> {
+    let mut out = Vec::with_capacity(side * side);
+    for j in 0..side {
+        for i in 0..side {
+            let u = (i as f32 + 0.5) / side as f32 - 0.5;
+            let v = 0.5 - (j as f32 + 0.5) / side as f32;
+            out.push(Ray { origin: [0.0; 3], direction: [u, v, -1.0] });
+        }
+    }
+    out
+}
+
+/// Incoherent rays: origins uniform in the cube, directions uniform on the unit sphere.
+pub fn random_rays(n: usize) -> Vec<Ray> {
+    let mut rng = SplitMix(0xD1CE);
+    (0..n)
+        .map(|_| {
+            let origin = [rng.signed(), rng.signed(), rng.signed() - 3.0];
+            let direction = loop {
+                let d = [rng.signed(), rng.signed(), rng.signed()];
+                let l2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                if l2 > 1e-4 && l2 <= 1.0 {
+                    let l = l2.sqrt();
+                    break d.map(|v| v / l);
+                }
+            };
+            Ray { origin, direction }
+        })
+        .collect()
+}
