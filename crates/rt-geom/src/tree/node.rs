@@ -61,7 +61,7 @@ impl Boxes {
 }
 
 /// An inner node, as a walk sees it: the boxes of its children, because boxes cull better above the leaf blocks
-/// (`docs/performance.md` has the measurement). Their minimal balls, the tree's definition, lie aside.
+/// (`benches/peers` measures it). Their minimal balls, the tree's definition, lie aside.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
