@@ -268,22 +268,29 @@ impl Survivors {
 /// 1968).
 #[inline(always)]
 fn descending<S: Simd>(simd: S, v: u32x8<S>) -> u32x8<S> {
-    // Swap neighbours, reverse fours, swap pairs: as bytes, within blocks of sixteen.
-    let shuffle = |order: [u8; 4]| {
-        let bytes: [u8; 32] = std::array::from_fn(|i| 4 * order[i / 4 % 4] + byte(i % 4));
-        u8x32::from_slice(simd, &bytes)
-    };
-    let (neighbours, fours, pairs) = (shuffle([1, 0, 3, 2]), shuffle([3, 2, 1, 0]), shuffle([2, 3, 0, 1]));
-    let step = |v: u32x8<S>, partner: u32x8<S>, greater: u64| {
-        let greater = mask32x8::from_bitmask(simd, greater);
-        greater.select(v.max(partner), v.min(partner))
-    };
-    let v = step(v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101);
-    let v = step(v, v.swizzle_dyn_within_blocks(fours), 0b0011_0011);
-    let v = step(v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101);
-    let v = step(v, v.swizzle_dyn_within_blocks(fours).rotate_elements_left::<4>(), 0b0000_1111);
-    let v = step(v, v.swizzle_dyn_within_blocks(pairs), 0b0011_0011);
-    step(v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101)
+    // Swap neighbours, reverse fours, swap pairs.
+    let neighbours = shuffle(simd, [1, 0, 3, 2]);
+    let fours = shuffle(simd, [3, 2, 1, 0]);
+    let pairs = shuffle(simd, [2, 3, 0, 1]);
+    let v = step(simd, v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101);
+    let v = step(simd, v, v.swizzle_dyn_within_blocks(fours), 0b0011_0011);
+    let v = step(simd, v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101);
+    let v = step(simd, v, v.swizzle_dyn_within_blocks(fours).rotate_elements_left::<4>(), 0b0000_1111);
+    let v = step(simd, v, v.swizzle_dyn_within_blocks(pairs), 0b0011_0011);
+    step(simd, v, v.swizzle_dyn_within_blocks(neighbours), 0b0101_0101)
+}
+
+/// An order of four numbers as one of bytes, for both halves.
+#[inline(always)]
+fn shuffle<S: Simd>(simd: S, order: [u8; 4]) -> u8x32<S> {
+    let bytes: [u8; 32] = std::array::from_fn(|i| 4 * order[i / 4 % 4] + byte(i % 4));
+    u8x32::from_slice(simd, &bytes)
+}
+
+/// The greater of each pair where `greater` has a bit, the smaller elsewhere.
+#[inline(always)]
+fn step<S: Simd>(simd: S, v: u32x8<S>, partner: u32x8<S>, greater: u64) -> u32x8<S> {
+    mask32x8::from_bitmask(simd, greater).select(v.max(partner), v.min(partner))
 }
 
 #[inline(always)]

@@ -187,32 +187,47 @@ pub(super) fn meet_boxes<S: Simd>(simd: S, line: &Line, boxes: &Boxes, keys: &mu
 /// The same in registers.
 #[inline(always)]
 pub(super) fn box_keys<S: Simd>(simd: S, line: &Line, boxes: &Boxes) -> (u32x16<S>, mask32x16<S>) {
-    let plane = |row: usize, axis: usize, offset: &[f32; 3]| {
-        let planes = load(simd, &boxes.0[row]);
-        planes.mul_add(f32x16::splat(simd, line.inverse[axis]), f32x16::splat(simd, offset[axis]))
-    };
-    let near = |axis: usize| plane(line.near[axis], axis, &line.near_offset);
-    let far = |axis: usize| plane(line.far[axis], axis, &line.far_offset);
-    let enter = near(0).max(near(1)).max(near(2).max(f32x16::splat(simd, line.start)));
-    let leave = far(0).min(far(1)).min(far(2).min(f32x16::splat(simd, line.end)));
+    let near = |axis: usize| (line.near[axis], line.inverse[axis], line.near_offset[axis]);
+    let far = |axis: usize| (line.far[axis], line.inverse[axis], line.far_offset[axis]);
+    let (x, y, z) = (near(0), near(1), near(2));
+    let enter = planes(simd, boxes, x).max(planes(simd, boxes, y));
+    let enter = enter.max(planes(simd, boxes, z).max(f32x16::splat(simd, line.start)));
+    let (x, y, z) = (far(0), far(1), far(2));
+    let leave = planes(simd, boxes, x).min(planes(simd, boxes, y));
+    let leave = leave.min(planes(simd, boxes, z).min(f32x16::splat(simd, line.end)));
     ((enter + KEY_SHIFT).bitcast(), enter.simd_le(leave))
+}
+
+/// Where a line meets a row of planes. (Not a closure: a closure would not be compiled for the instruction set.)
+#[inline(always)]
+fn planes<S: Simd>(simd: S, boxes: &Boxes, (row, inverse, offset): (usize, f32, f32)) -> f32x16<S> {
+    load(simd, &boxes.0[row]).mul_add(f32x16::splat(simd, inverse), f32x16::splat(simd, offset))
 }
 
 /// The balls met, as bits.
 #[inline(always)]
 pub(super) fn meet_balls<S: Simd>(simd: S, line: &Line, balls: &Balls) -> u32 {
-    let center: [f32x16<S>; 3] = std::array::from_fn(|axis| load(simd, &balls.center[axis]));
-    let along = |k: usize| {
-        let axis = line.axes[k];
-        let z = center[2].mul_add(f32x16::splat(simd, axis.z), f32x16::splat(simd, -line.offset[k]));
-        let yz = center[1].mul_add(f32x16::splat(simd, axis.y), z);
-        center[0].mul_add(f32x16::splat(simd, axis.x), yz)
-    };
-    let (x, y, t) = (along(0), along(1), along(2));
+    let center = (load(simd, &balls.center[0]), load(simd, &balls.center[1]), load(simd, &balls.center[2]));
+    let x = along(simd, center, line.axes[0], line.offset[0]);
+    let y = along(simd, center, line.axes[1], line.offset[1]);
+    let t = along(simd, center, line.axes[2], line.offset[2]);
     let beyond = t - t.max(f32x16::splat(simd, line.start)).min(f32x16::splat(simd, line.end));
     let squared = x.mul_add(x, y.mul_add(y, beyond * beyond));
     let reach = load(simd, &balls.radius) + line.ball_slack;
     bits(squared.simd_le(reach * reach).to_bitmask())
+}
+
+/// How far along an axis the points are.
+#[inline(always)]
+fn along<S: Simd>(
+    simd: S,
+    (x, y, z): (f32x16<S>, f32x16<S>, f32x16<S>),
+    axis: Vec3,
+    offset: f32,
+) -> f32x16<S> {
+    let z = z.mul_add(f32x16::splat(simd, axis.z), f32x16::splat(simd, -offset));
+    let yz = y.mul_add(f32x16::splat(simd, axis.y), z);
+    x.mul_add(f32x16::splat(simd, axis.x), yz)
 }
 
 #[inline(always)]

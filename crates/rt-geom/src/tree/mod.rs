@@ -15,13 +15,11 @@ use rayon::prelude::*;
 pub use halving::HalvingTree;
 pub use walk::Visits;
 
-use crate::ray::PreparedRay;
 use crate::{Ray, Sphere, Triangle, enclosing_sphere};
 use batch::fly;
 use build::{Branch, Item, Part, Spans};
-use cull::Line;
 use node::{Balls, Boxes, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH, down, up};
-use walk::{Best, STACK, is_open, walk};
+use walk::{STACK, cast, is_open};
 
 /// Where a ray meets a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,24 +242,24 @@ impl SphereTree {
 
     /// Returns the closest hit with its `t` in the range: the smallest `t`, and of equal `t` the lowest index.
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<Hit> {
-        self.query(ray, within, &mut Visits::default())
+        self.query(ray, within, false, &mut Visits::default())
     }
 
     /// As [`closest`](Self::closest), with what the query did.
     pub fn closest_counted(&self, ray: &Ray, within: Range<f64>) -> (Option<Hit>, Visits) {
         let mut visits = Visits::default();
-        (self.query(ray, within, &mut visits), visits)
+        (self.query(ray, within, false, &mut visits), visits)
     }
 
     /// Returns whether anything is hit with its `t` in the range.
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        self.query_any(ray, within, &mut Visits::default())
+        self.query(ray, within, true, &mut Visits::default()).is_some()
     }
 
     /// As [`any`](Self::any), with what the query did.
     pub fn any_counted(&self, ray: &Ray, within: Range<f64>) -> (bool, Visits) {
         let mut visits = Visits::default();
-        (self.query_any(ray, within, &mut visits), visits)
+        (self.query(ray, within, true, &mut visits).is_some(), visits)
     }
 
     /// Writes the closest hit of each ray.
@@ -294,33 +292,12 @@ impl SphereTree {
         self.fly(rays, &within, true, &mut |i, hit| hits[i] = hit.is_some());
     }
 
-    fn query(&self, ray: &Ray, within: Range<f64>, visits: &mut Visits) -> Option<Hit> {
+    #[inline(never)]
+    fn query(&self, ray: &Ray, within: Range<f64>, any: bool, visits: &mut Visits) -> Option<Hit> {
         if !is_open(&within) {
             return None;
         }
-        let prepared = PreparedRay::new(ray, within);
-        self.find(&prepared, false, visits).hit(self, &prepared)
-    }
-
-    fn query_any(&self, ray: &Ray, within: Range<f64>, visits: &mut Visits) -> bool {
-        is_open(&within) && self.find(&PreparedRay::new(ray, within), true, visits).exists()
-    }
-
-    #[inline(never)]
-    fn find(&self, ray: &PreparedRay, any: bool, visits: &mut Visits) -> Best {
-        let mut line = Line::EVERYTHING;
-        if !line.set(&self.frame, ray) {
-            return Best::NONE;
-        }
-        let mut usual = [0; STACK];
-        let mut large = Vec::new();
-        let stack = if self.stack <= STACK {
-            &mut usual[..]
-        } else {
-            large.resize(self.stack, 0);
-            &mut large[..]
-        };
-        dispatch!(self.level, simd => walk(simd, self, ray, any, line, stack, visits))
+        dispatch!(self.level, simd => cast(simd, self, ray, within.clone(), any, visits))
     }
 
     #[inline(never)]

@@ -13,6 +13,7 @@ use fearless_simd::Simd;
 use super::cull::{Line, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
 use super::{Hit, Shape, SphereTree};
+use crate::Ray;
 use crate::ray::{Candidate, PreparedRay};
 
 /// What a query did, for reports.
@@ -31,6 +32,9 @@ pub(super) type Pending = u64;
 
 /// Entries that a stack of the usual size holds; [`SphereTree::stack`] tells what a tree needs.
 pub(super) const STACK: usize = 128;
+
+/// With more primitives than this, what a walk reads is no longer in the cache nearby, and is asked for early.
+const CACHED: usize = 1 << 15;
 
 #[inline(always)]
 fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
@@ -75,6 +79,7 @@ impl Best {
             || (bounds.low <= self.bounds.high && self.settle(place, tree, ray));
         if closer && bounds.high < self.bounds.low {
             *self = Self { bounds, place };
+            prefetch_lines(tree.index.as_ptr().wrapping_add(place), 1);
         }
         closer
     }
@@ -127,11 +132,37 @@ impl Best {
     }
 }
 
-/// Finds the closest hit, or with `any` some hit.
+/// Finds the closest hit, or with `any` some hit, of which then only the existence counts.
 ///
 /// Compiled once for each instruction set, so what it is asked for is told by value.
 #[inline(always)]
-pub(super) fn walk<S: Simd>(
+pub(super) fn cast<S: Simd>(
+    simd: S,
+    tree: &SphereTree,
+    ray: &Ray,
+    within: Range<f64>,
+    any: bool,
+    visits: &mut Visits,
+) -> Option<Hit> {
+    let prepared = PreparedRay::new(ray, within);
+    let mut line = Line::EVERYTHING;
+    if !line.set(&tree.frame, &prepared) {
+        return None;
+    }
+    let mut usual = [0; STACK];
+    let mut large = Vec::new();
+    let stack = if tree.stack <= STACK {
+        &mut usual[..]
+    } else {
+        large.resize(tree.stack, 0);
+        &mut large[..]
+    };
+    let best = walk(simd, tree, &prepared, any, line, stack, visits);
+    if any { best.exists().then_some(Hit { index: 0, t: 0.0 }) } else { best.hit(tree, &prepared) }
+}
+
+#[inline(always)]
+fn walk<S: Simd>(
     simd: S,
     tree: &SphereTree,
     ray: &PreparedRay,
@@ -143,6 +174,7 @@ pub(super) fn walk<S: Simd>(
     let mut best = Best::NONE;
     let mut keys = [0; WIDTH];
     let areas = Areas::of(tree);
+    let fetch = tree.len() > CACHED;
     let mut height = 0;
     let Some(mut at) = tree.root else { return best };
     loop {
@@ -154,7 +186,9 @@ pub(super) fn walk<S: Simd>(
                 let next = |met: &mut u32| {
                     let lane = met.trailing_zeros() as usize;
                     *met &= *met - 1;
-                    areas.prefetch(node.children[lane]);
+                    if fetch {
+                        areas.prefetch(node.children[lane]);
+                    }
                     pending(&keys, &node.children, lane)
                 };
                 let a = next(&mut met);
@@ -205,6 +239,8 @@ pub(super) fn walk<S: Simd>(
             let before = best.limit();
             let block = at.index();
             if at.kind() == Kind::Spheres {
+                // While the bounds are on their way, so are the spheres.
+                prefetch_lines(tree.spheres.as_ptr().wrapping_add(block * WIDTH), 8);
                 let mut met = meet_balls(simd, black_box(&line), &tree.sphere_blocks[block]);
                 while met != 0 {
                     let place = block * WIDTH + met.trailing_zeros() as usize;
