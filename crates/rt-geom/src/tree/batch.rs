@@ -12,7 +12,7 @@ use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::cull::{Line, box_keys, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
-use super::walk::{Areas, Best, STACK, prefetch_lines};
+use super::walk::{Areas, Best, prefetch_lines};
 use super::{Hit, SphereTree};
 use crate::Ray;
 use crate::ray::PreparedRay;
@@ -32,12 +32,18 @@ struct Slot<'a> {
     height: usize,
     /// Whose answer it is.
     target: usize,
-    keys: [u32; STACK + WIDTH],
-    nodes: [u32; STACK + WIDTH],
+    /// Where its stack begins.
+    base: usize,
+}
+
+/// The stacks of all slots: the keys of what is pending, with the lane in the low bits, and the node that it is in.
+struct Stacks {
+    keys: Vec<u32>,
+    nodes: Vec<u32>,
 }
 
 impl<'a> Slot<'a> {
-    fn new(ray: &'a Ray, within: &Range<f64>) -> Self {
+    fn new(ray: &'a Ray, within: &Range<f64>, base: usize) -> Self {
         Self {
             line: Line::EVERYTHING,
             ray: PreparedRay::new(ray, within.clone()),
@@ -45,8 +51,7 @@ impl<'a> Slot<'a> {
             at: Child::from_bits(0),
             height: 0,
             target: 0,
-            keys: [0; _],
-            nodes: [0; _],
+            base,
         }
     }
 }
@@ -103,7 +108,12 @@ pub(super) fn fly<S: Simd>(
     let areas = Areas::of(tree);
     let mut waiting = rays.iter().enumerate();
     let mut lists = Lists::default();
-    let mut slots: Vec<Slot> = (0..FLIGHT.min(rays.len())).map(|_| Slot::new(&rays[0], within)).collect();
+    let fetch = tree.is_large();
+    // A step writes sixteen entries, however many are met.
+    let depth = tree.stack + WIDTH;
+    let flight = FLIGHT.min(rays.len());
+    let mut slots: Vec<Slot> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
+    let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
     for (at, slot) in slots.iter_mut().enumerate() {
         if launch(slot, root, tree, within, &mut waiting, &mut answer) {
             lists.push(root.kind() as usize, at);
@@ -127,8 +137,13 @@ pub(super) fn fly<S: Simd>(
                             tree.spheres.len() + place,
                         )
                     };
-                    if let Some(bounds) = bounds {
-                        slot.best.offer(bounds, place, tree, &slot.ray);
+                    if let Some(bounds) = bounds
+                        && slot.best.offer(bounds, place, tree, &slot.ray)
+                    {
+                        slot.line.shorten(slot.best.limit());
+                        if any {
+                            slot.height = 0;
+                        }
                     }
                 }
             }
@@ -137,11 +152,11 @@ pub(super) fn fly<S: Simd>(
         let (resumed, len) = lists.take(RESUME);
         for &at in &resumed[..len] {
             let slot = &mut slots[usize::from(at)];
-            slot.line.shorten(slot.best.limit());
-            if any && slot.best.exists() {
-                slot.height = 0;
+            let child = next(slot, tree, &stacks);
+            lists.push(child.map_or(DONE, |child| child.kind() as usize), usize::from(at));
+            if fetch && let Some(child) = child {
+                areas.prefetch(child);
             }
-            next(slot, usize::from(at), tree, &areas, &mut lists);
         }
         let (inner, len) = lists.take(INNER);
         for &at in &inner[..len] {
@@ -153,9 +168,9 @@ pub(super) fn fly<S: Simd>(
             let lanes = u32x16::from_fn(simd, word);
             let met = ((keys & !LANE) | lanes).compress(mask);
             let count = mask.to_bitmask().count_ones() as usize;
-            let height = slot.height;
+            let top = slot.base + slot.height;
             let low: &mut [u32; WIDTH] =
-                (&mut slot.keys[height..height + WIDTH]).try_into().expect("a slice of sixteen");
+                (&mut stacks.keys[top..top + WIDTH]).try_into().expect("a slice of sixteen");
             if count <= 8 {
                 let (first, _) = met.split();
                 descending(simd, first).store_slice(&mut low[..8]);
@@ -163,8 +178,8 @@ pub(super) fn fly<S: Simd>(
                 met.store_slice(low);
                 low[..count].sort_unstable_by(|a, b| b.cmp(a));
             }
-            slot.nodes[height..height + WIDTH].fill(word(index));
-            slot.height = height + count;
+            stacks.nodes[top..top + WIDTH].fill(word(index));
+            slot.height += count;
             lists.push(RESUME, at);
         }
         let (leaf, len) = lists.take(SPHERES);
@@ -230,25 +245,22 @@ fn launch<'a>(
     false
 }
 
-/// Takes the nearest pending part that is still of interest and puts the slot on the list of its kind.
+/// Takes the nearest pending part that is still of interest.
 #[inline(always)]
-fn next(slot: &mut Slot, at: usize, tree: &SphereTree, areas: &Areas, lists: &mut Lists) {
+fn next(slot: &mut Slot, tree: &SphereTree, stacks: &Stacks) -> Option<Child> {
     let last = slot.line.last_key();
-    let mut height = slot.height;
-    while height > 0 && slot.keys[height - 1] & !LANE > last {
-        height -= 1;
+    let mut top = slot.base + slot.height;
+    while top > slot.base && stacks.keys[top - 1] & !LANE > last {
+        top -= 1;
     }
-    if height == 0 {
-        lists.push(DONE, at);
-        return;
+    if top == slot.base {
+        return None;
     }
-    height -= 1;
-    slot.height = height;
-    let node = &tree.nodes[slot.nodes[height] as usize];
-    let child = node.children[(slot.keys[height] & LANE) as usize];
-    slot.at = child;
-    lists.push(child.kind() as usize, at);
-    areas.prefetch(child);
+    top -= 1;
+    slot.height = top - slot.base;
+    let node = &tree.nodes[stacks.nodes[top] as usize];
+    slot.at = node.children[(stacks.keys[top] & LANE) as usize];
+    Some(slot.at)
 }
 
 impl Survivors {

@@ -19,7 +19,7 @@ use crate::{Ray, Sphere, Triangle, enclosing_sphere};
 use batch::fly;
 use build::{Branch, Item, Part, Spans};
 use node::{Balls, Boxes, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH, down, up};
-use walk::{STACK, cast, is_open};
+use walk::{cast, is_open};
 
 /// Where a ray meets a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -268,10 +268,8 @@ impl SphereTree {
     /// If the slices differ in length.
     pub fn closest_batch(&self, rays: &[Ray], within: Range<f64>, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one place for the answer to each ray");
-        if self.stack > STACK || !is_open(&within) {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.closest(ray, within.clone());
-            }
+        if !is_open(&within) {
+            hits.fill(None);
             return;
         }
         self.fly(rays, &within, false, &mut |i, hit| hits[i] = hit);
@@ -283,10 +281,8 @@ impl SphereTree {
     /// If the slices differ in length.
     pub fn any_batch(&self, rays: &[Ray], within: Range<f64>, hits: &mut [bool]) {
         assert_eq!(rays.len(), hits.len(), "one place for the answer to each ray");
-        if self.stack > STACK || !is_open(&within) {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.any(ray, within.clone());
-            }
+        if !is_open(&within) {
+            hits.fill(false);
             return;
         }
         self.fly(rays, &within, true, &mut |i, hit| hits[i] = hit.is_some());

@@ -31,7 +31,7 @@ pub struct Visits {
 pub(super) type Pending = u64;
 
 /// Entries that a stack of the usual size holds; [`SphereTree::stack`] tells what a tree needs.
-pub(super) const STACK: usize = 128;
+const STACK: usize = 128;
 
 /// With more primitives than this, what a walk reads is no longer in the cache nearby, and is asked for early.
 const CACHED: usize = 1 << 15;
@@ -157,7 +157,7 @@ pub(super) fn cast<S: Simd>(
         large.resize(tree.stack, 0);
         &mut large[..]
     };
-    let best = walk(simd, tree, &prepared, any, line, stack, visits);
+    let best = walk(simd, tree, &prepared, any, &mut line, stack, visits);
     if any { best.exists().then_some(Hit { index: 0, t: 0.0 }) } else { best.hit(tree, &prepared) }
 }
 
@@ -167,21 +167,21 @@ fn walk<S: Simd>(
     tree: &SphereTree,
     ray: &PreparedRay,
     any: bool,
-    mut line: Line,
+    line: &mut Line,
     stack: &mut [Pending],
     visits: &mut Visits,
 ) -> Best {
     let mut best = Best::NONE;
     let mut keys = [0; WIDTH];
     let areas = Areas::of(tree);
-    let fetch = tree.len() > CACHED;
+    let fetch = tree.is_large();
     let mut height = 0;
     let Some(mut at) = tree.root else { return best };
     loop {
         if at.is_inner() {
             let node = &tree.nodes[at.index()];
             visits.nodes += 1;
-            let mut met = meet_boxes(simd, black_box(&line), &node.boxes, &mut keys);
+            let mut met = meet_boxes(simd, black_box(&*line), &node.boxes, &mut keys);
             if met != 0 {
                 let next = |met: &mut u32| {
                     let lane = met.trailing_zeros() as usize;
@@ -241,7 +241,7 @@ fn walk<S: Simd>(
             if at.kind() == Kind::Spheres {
                 // While the bounds are on their way, so are the spheres.
                 prefetch_lines(tree.spheres.as_ptr().wrapping_add(block * WIDTH), 8);
-                let mut met = meet_balls(simd, black_box(&line), &tree.sphere_blocks[block]);
+                let mut met = meet_balls(simd, black_box(&*line), &tree.sphere_blocks[block]);
                 while met != 0 {
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
@@ -251,7 +251,7 @@ fn walk<S: Simd>(
                     }
                 }
             } else {
-                let mut met = meet_boxes(simd, black_box(&line), &tree.triangle_blocks[block], &mut keys);
+                let mut met = meet_boxes(simd, black_box(&*line), &tree.triangle_blocks[block], &mut keys);
                 while met != 0 {
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
@@ -334,6 +334,12 @@ pub(super) fn is_open(within: &Range<f64>) -> bool {
 }
 
 impl SphereTree {
+    /// Whether what a walk reads is better asked for early.
+    #[inline(always)]
+    pub(super) fn is_large(&self) -> bool {
+        self.len() > CACHED
+    }
+
     /// The primitive at a place of the leaf order.
     #[cold]
     pub(super) fn placed(&self, place: usize) -> Shape {
