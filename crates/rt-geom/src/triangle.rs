@@ -105,7 +105,7 @@ impl Triangle {
         if low == high {
             return Some(low);
         }
-        exact::rounded_t(self, ray).or_else(|| Some(exact::integer_t(self, ray)))
+        Some(self.refine(ray))
     }
 
     /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
@@ -233,6 +233,12 @@ impl Triangle {
             return Some(hit);
         }
         Some((self.closest(ray, within)?, self.hit_barycentric(ray)?))
+    }
+
+    /// Returns the correctly rounded `t` of a hit that is known to exist: what `closest` gives.
+    #[inline]
+    pub(crate) fn refine(&self, ray: &Ray) -> f64 {
+        exact::rounded_t(self, ray).unwrap_or_else(|| exact::integer_t(self, ray))
     }
 
     /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond

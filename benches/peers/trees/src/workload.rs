@@ -164,3 +164,37 @@ pub fn random_rays(n: usize) -> Vec<Ray> {
         })
         .collect()
 }
+
+/// Corners and triangles.
+pub type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+/// About `n` triangles in the place of the spheres' cube:
+///
+/// - `globe`: a sphere of radius 1 by rings and sectors, closed.
+/// - `terrain`: a square of hills seen from above, open.
+pub fn mesh(name: &str, n: usize) -> Mesh {
+    let across = (n as f64 / 2.0).sqrt().round() as u32;
+    let at = |i: u32, j: u32| {
+        let (u, v) = (f64::from(i) / f64::from(across), f64::from(j) / f64::from(across));
+        let p = match name {
+            "globe" => {
+                let (turn, tilt) = (std::f64::consts::TAU * (u % 1.0), std::f64::consts::PI * v);
+                [tilt.sin() * turn.cos(), tilt.cos(), tilt.sin() * turn.sin() - 3.0]
+            }
+            "terrain" => {
+                let hills = 0.15 * (9.0 * u).sin() * (7.0 * v).cos() + 0.02 * (61.0 * u + 5.0 * v).sin();
+                [2.0 * u - 1.0, 2.0 * v - 1.0, hills - 3.0]
+            }
+            other => panic!("no mesh {other}"),
+        };
+        p.map(|x| x as f32)
+    };
+    let corners = (0..=across).flat_map(|j| (0..=across).map(move |i| at(i, j))).collect();
+    let corner = |i: u32, j: u32| j * (across + 1) + i;
+    let cell = |(i, j): (u32, u32)| {
+        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)];
+        [[a, b, d], [a, d, c]]
+    };
+    let cells = (0..across).flat_map(|j| (0..across).map(move |i| (i, j)));
+    (corners, cells.flat_map(cell).collect())
+}

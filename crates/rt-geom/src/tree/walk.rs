@@ -122,11 +122,10 @@ impl Best {
         let t = if low.to_bits() == high.to_bits() {
             low
         } else {
-            let refined = match tree.spheres.get(self.place) {
-                Some(sphere) => sphere.refine(ray, self.bounds),
-                None => tree.rounded(self.place, ray),
-            };
-            refined.expect("a candidate is a hit")
+            match tree.spheres.get(self.place) {
+                Some(sphere) => sphere.refine(ray, self.bounds).expect("a candidate is a hit"),
+                None => tree.triangles[self.place - tree.spheres.len()].refine(ray.ray),
+            }
         };
         Some(Hit { index: tree.index[self.place] as usize, t })
     }
@@ -251,6 +250,9 @@ fn walk<S: Simd>(
                     }
                 }
             } else {
+                if fetch {
+                    prefetch_lines(tree.triangles.as_ptr().wrapping_add(block * WIDTH), 18);
+                }
                 let mut met = meet_boxes(simd, black_box(&*line), &tree.triangle_blocks[block], &mut keys);
                 while met != 0 {
                     let place = block * WIDTH + met.trailing_zeros() as usize;

@@ -9,7 +9,11 @@ use crate::{Contestant, Hit, Ray, Sphere, Tracer, memory};
 type Handle = *mut c_void;
 
 const SPHERE_POINT: c_int = 50;
+const TRIANGLE: c_int = 0;
+const INDEX: c_int = 0;
 const VERTEX: c_int = 1;
+const FLOAT3: c_int = 0x9003;
+const UINT3: c_int = 0x5003;
 const FLOAT4: c_int = 0x9004;
 const MEDIUM: c_int = 1;
 const HIGH: c_int = 2;
@@ -111,8 +115,9 @@ struct Variant {
 }
 
 struct Embree {
-    /// The vertex buffer, shared with Embree.
-    _spheres: Vec<Sphere>,
+    /// Spheres or corners, shared with Embree.
+    _vertices: Vec<f32>,
+    _triangles: Vec<[u32; 3]>,
     /// From Embree's indices to the input's; empty where they are the same.
     ids: Vec<u32>,
     device: Handle,
@@ -128,24 +133,37 @@ impl Embree {
         } else {
             spheres.to_vec()
         };
+        let vertices = spheres.into_iter().flatten().collect();
+        Self::commit(vertices, Vec::new(), ids, v)
+    }
+
+    /// A scene of triangles if there are any, else of spheres.
+    fn commit(vertices: Vec<f32>, triangles: Vec<[u32; 3]>, ids: Vec<u32>, v: Variant) -> Self {
         let config = CString::new(v.config).expect("no NUL in a literal");
+        let kind = if triangles.is_empty() { SPHERE_POINT } else { TRIANGLE };
         unsafe {
             let device = rtcNewDevice(config.as_ptr());
             rtcSetDeviceMemoryMonitorFunction(device, count_bytes, null_mut());
             let scene = rtcNewScene(device);
             rtcSetSceneBuildQuality(scene, v.quality);
             rtcSetSceneFlags(scene, v.flags);
-            let points = rtcNewGeometry(device, SPHERE_POINT);
-            rtcSetGeometryBuildQuality(points, v.quality);
-            let data = spheres.as_ptr().cast();
-            rtcSetSharedGeometryBuffer(points, VERTEX, 0, FLOAT4, data, 0, 16, spheres.len());
-            rtcCommitGeometry(points);
-            rtcAttachGeometry(scene, points);
-            rtcReleaseGeometry(points);
+            let shapes = rtcNewGeometry(device, kind);
+            rtcSetGeometryBuildQuality(shapes, v.quality);
+            let data = vertices.as_ptr().cast();
+            if triangles.is_empty() {
+                rtcSetSharedGeometryBuffer(shapes, VERTEX, 0, FLOAT4, data, 0, 16, vertices.len() / 4);
+            } else {
+                rtcSetSharedGeometryBuffer(shapes, VERTEX, 0, FLOAT3, data, 0, 12, vertices.len() / 3);
+                let corners = triangles.as_ptr().cast();
+                rtcSetSharedGeometryBuffer(shapes, INDEX, 0, UINT3, corners, 0, 12, triangles.len());
+            }
+            rtcCommitGeometry(shapes);
+            rtcAttachGeometry(scene, shapes);
+            rtcReleaseGeometry(shapes);
             rtcCommitScene(scene);
             let error = rtcGetDeviceError(device);
             assert_eq!(error, 0, "Embree refused {}", v.config);
-            Embree { _spheres: spheres, ids, device, scene, mode: v.mode }
+            Embree { _vertices: vertices, _triangles: triangles, ids, device, scene, mode: v.mode }
         }
     }
 
@@ -274,6 +292,15 @@ impl Tracer for Embree {
         };
         Some(rays.iter().filter(blocked).count())
     }
+}
+
+/// A mesh, `rtcIntersect1`, with Embree's robust flag or without.
+pub fn mesh(corners: &[[f32; 3]], triangles: &[[u32; 3]], robust: bool) -> Box<dyn Tracer> {
+    let flags = if robust { ROBUST } else { 0 };
+    let variant = Variant { config: "threads=1", quality: MEDIUM, flags, mode: Mode::Single, sorted: false };
+    // Embree reads 16 bytes of the last corner.
+    let vertices = corners.iter().flatten().copied().chain([0.0]).collect::<Vec<f32>>();
+    Box::new(Embree::commit(vertices, triangles.to_vec(), Vec::new(), variant))
 }
 
 /// Version and what the library says it can do here.

@@ -1,8 +1,8 @@
 use crate::Contestant;
 
-mod embree;
+pub mod embree;
 mod obvhs;
-mod ours;
+pub mod ours;
 
 pub use embree::describe as describe_embree;
 

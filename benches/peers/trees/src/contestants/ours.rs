@@ -64,6 +64,20 @@ impl Tracer for Ours {
     }
 }
 
+/// A mesh, one ray at a time or in batches.
+pub fn mesh(corners: &[[f32; 3]], triangles: &[[u32; 3]], batch: bool, simd: Option<&str>) -> Box<dyn Tracer> {
+    let triangle = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| vector(corners[i as usize]));
+        geom::Triangle::new(a, b, c).expect("finite corners")
+    };
+    let tree = geom::SphereTree::new(Vec::new(), triangles.iter().map(triangle).collect());
+    let tree = match simd {
+        Some(name) => tree.with_simd(name).expect("this CPU has the instruction set"),
+        None => tree,
+    };
+    Box::new(Ours { tree, batch })
+}
+
 pub fn contestants() -> Vec<Contestant> {
     let row = |name, batch, simd: Option<&'static str>| Contestant {
         name,
