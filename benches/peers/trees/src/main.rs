@@ -1,8 +1,10 @@
 //! Measures every contestant in one process: builds, then interleaved rounds of each ray set.
 //!
-//! peers [--scenes a,b] [--sizes 1e3,1e5] [--huge] [--only name,...] [--rounds n] [--check n]
-//!       [--distant d]
+//! trees [--scenes a,b] [--sizes 1e3,1e5] [--huge] [--only name,...] [--rounds n] [--check n]
+//!       [--distant d] [--ratios]
 //!
+//! `--ratios` prints instead how many times faster ours is than `rtcIntersect1` (`embree high`), as a
+//! Markdown table with geometric means; for batches also against `rtcIntersect1M`.
 //! `--huge` adds 1e7 spheres; `--check` sets how many rays of a set the f64 referee answers;
 //! `--distant` adds camera rays from `d` units in front of the scene, where f32 runs out of digits.
 //! `--only` takes beginnings of names; `=name` asks for exactly that one. Times are the process's
@@ -21,6 +23,7 @@ struct Options {
     rounds: usize,
     check: usize,
     distant: Option<f32>,
+    ratios: bool,
 }
 
 fn options() -> Options {
@@ -31,11 +34,16 @@ fn options() -> Options {
         rounds: 2,
         check: 20_000,
         distant: None,
+        ratios: false,
     };
     let mut args = std::env::args().skip(1);
     while let Some(flag) = args.next() {
         if flag == "--huge" {
             o.sizes.push(10_000_000);
+            continue;
+        }
+        if flag == "--ratios" {
+            o.ratios = true;
             continue;
         }
         let value = args.next().unwrap_or_else(|| panic!("{flag} wants a value"));
@@ -204,7 +212,10 @@ fn main() {
         RaySet { name: "occlusion", rays: trees::workload::random_rays(1_000_000), any: true },
     ];
     sets.extend(o.distant.map(|d| RaySet { name: "distant", rays: distant(d), any: false }));
-    println!("scene\tspheres\tset\tcontestant\tMrays/s\tMsph/s\tB/sphere\tpeak_B/sphere\tspread\trays\thits\tsum_t\tchecked\twrong_verdict\twrong_id\tgross_t\tt_median\tt_p99.9\tt_max\tt_abs_max");
+    if !o.ratios {
+        println!("scene\tspheres\tset\tcontestant\tMrays/s\tMsph/s\tB/sphere\tpeak_B/sphere\tspread\trays\thits\tsum_t\tchecked\twrong_verdict\twrong_id\tgross_t\tt_median\tt_p99.9\tt_max\tt_abs_max");
+    }
+    let mut ratios = Ratios::default();
     for scene in &o.scenes {
         for &n in &o.sizes {
             let spheres = trees::workload::spheres(scene, n);
@@ -218,7 +229,12 @@ fn main() {
                 } else {
                     picked.map(|i| (i, reference.closest(&set.rays[i]))).collect()
                 };
-                for (b, row) in built.iter().zip(run(set, &built, &answers, o.rounds)) {
+                let rows = run(set, &built, &answers, o.rounds);
+                if o.ratios {
+                    ratios.add(scene, n, set, &built, &rows);
+                    continue;
+                }
+                for (b, row) in built.iter().zip(rows) {
                     if row.seconds.is_empty() {
                         continue;
                     }
@@ -251,6 +267,74 @@ fn main() {
                 }
             }
         }
+    }
+    if o.ratios {
+        ratios.print();
+    }
+}
+
+const RATIOS: [(&str, &str, &str); 5] = [
+    ("single", "ours single", "embree high"),
+    ("batch", "ours batch", "embree high"),
+    ("batch / 1M", "ours batch", "embree stream 1024"),
+    ("single, AVX2", "ours single avx2", "embree high"),
+    ("batch, AVX2", "ours batch avx2", "embree high"),
+];
+
+/// The table of `--ratios`.
+#[derive(Default)]
+struct Ratios {
+    lines: Vec<String>,
+    /// Of each column the ratios of closest hits and of any hits.
+    columns: [[Vec<f64>; 2]; RATIOS.len()],
+    wrong: usize,
+    checked: usize,
+}
+
+impl Ratios {
+    fn add(&mut self, scene: &str, n: usize, set: &RaySet, built: &[Built], rows: &[Row]) {
+        let rate = |name: &str| {
+            let at = built.iter().position(|b| b.contestant.name == name)?;
+            let best = rows[at].seconds.iter().copied().reduce(f64::min)?;
+            Some(rows[at].rays as f64 / best / 1e6)
+        };
+        let faults = |names: &str| {
+            let ours = built.iter().zip(rows).filter(|(b, _)| b.contestant.name.starts_with(names));
+            let faults = ours.map(|(_, row)| (row.faults.checked, row.faults.verdict + row.faults.id));
+            faults.fold((0, 0), |sum, fault| (sum.0 + fault.0, sum.1 + fault.1))
+        };
+        let (checked, wrong) = faults("ours");
+        self.checked += checked;
+        self.wrong += wrong;
+        let embree = rate("embree high").unwrap_or(f64::NAN);
+        let mut line = format!("| {scene} | {n} | {} | {embree:.2} |", set.name);
+        for ((_, ours, peer), column) in RATIOS.iter().zip(&mut self.columns) {
+            match (rate(ours), rate(peer)) {
+                (Some(ours), Some(peer)) => {
+                    column[usize::from(set.any)].push(ours / peer);
+                    line += &format!(" {:.2} |", ours / peer);
+                }
+                _ => line += " |",
+            }
+        }
+        self.lines.push(line);
+    }
+
+    fn print(&self) {
+        print!("| scene | spheres | rays | Embree, Mrays/s |");
+        RATIOS.iter().for_each(|(title, ..)| print!(" {title} |"));
+        println!("\n| --- | ---: | --- | ---: |{}", " ---: |".repeat(RATIOS.len()));
+        self.lines.iter().for_each(|line| println!("{line}"));
+        for (any, title) in ["closest hit", "any hit"].into_iter().enumerate() {
+            let mean = |v: &Vec<f64>| (v.iter().map(|r| r.ln()).sum::<f64>() / v.len() as f64).exp();
+            let least = |v: &Vec<f64>| v.iter().copied().fold(f64::INFINITY, f64::min);
+            let cells = self.columns.iter().map(|column| match &column[any] {
+                v if v.is_empty() => String::from(" |"),
+                v => format!(" {:.2} (least {:.2}) |", mean(v), least(v)),
+            });
+            println!("| **geometric mean** | | {title} | |{}", cells.collect::<String>());
+        }
+        println!("\n{} of {} answers of ours differ from the plain loop's in f64.", self.wrong, self.checked);
     }
 }
 
