@@ -90,7 +90,7 @@ impl Renderer {
     }
 
     /// The colour that a ray brings back.
-    fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
+    pub(crate) fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
         let Some(Hit { index, t }) = hit else { return self.background };
         let point = ray.at(t);
         match self.tree.shape(index) {

@@ -1,7 +1,12 @@
-//! The command `report`: what it cannot read or compare is told by name.
+//! The command `report`: text and plots follow from the JSON alone, a check fails on a changed error, and what cannot be
+//! read is told by name.
 
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Output};
+
+/// A quick run, stored.
+const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/report/quick.json");
 
 fn figures(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_figures")).args(arguments).output().expect("the program starts")
@@ -10,6 +15,68 @@ fn figures(arguments: &[&str]) -> Output {
 fn complaint(output: &Output) -> String {
     assert!(output.stdout.is_empty(), "stdout is for what was asked");
     String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a plain path")
+}
+
+/// The files of a folder and their bytes.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let entries =
+        fs::read_dir(folder).expect("the folder is there").map(|entry| entry.expect("an entry").path());
+    let mut files: Vec<(String, Vec<u8>)> = entries
+        .map(|path| {
+            (text(&path).rsplit('/').next().unwrap_or_default().to_owned(), fs::read(&path).expect("a file"))
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+/// The stored run, cut down to what is measured in a second, with its errors changed by that.
+fn smaller(folder: &Path) -> String {
+    let stored = fs::read_to_string(STORED).expect("a quick run is stored");
+    let mut report: serde_json::Value = serde_json::from_str(&stored).expect("it is JSON");
+    report["effort"] = serde_json::json!({ "cases": 2, "rounds": 1, "timing": 1, "spheres": 100, "rows": 3 });
+    let path = folder.join("smaller.json");
+    fs::write(&path, report.to_string()).expect("the file can be written");
+    text(&path).to_owned()
+}
+
+#[test]
+fn a_report_written_again_from_its_json_has_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let (first, second) = (folder.path().join("first"), folder.path().join("second"));
+    assert!(figures(&["report", "--from", STORED, "--out", text(&first)]).status.success());
+    let json = first.join("report.json");
+    assert!(figures(&["report", "--from", text(&json), "--out", text(&second)]).status.success());
+    let (first, second) = (contents(&first), contents(&second));
+    let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
+    for name in
+        ["report.html", "report.md", "pictures.svg", "trees.svg", "quadratic.svg", "far-sphere-ours.png"]
+    {
+        assert!(names.contains(&name), "{name} is missing from {names:?}");
+    }
+    assert!(first == second, "the bytes of {names:?} differ");
+}
+
+#[test]
+fn a_check_against_other_errors_fails_and_names_them() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let output = figures(&["report", "--check", &smaller(folder.path())]);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = complaint(&output);
+    assert!(complaint.contains(" differences from the stored report:\n"), "{complaint}");
+    assert!(complaint.contains("quadratic, textbook, nearly double roots: "), "{complaint}");
+}
+
+#[test]
+fn a_quick_check_wants_a_quick_run() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let output = figures(&["report", "--quick", "--check", &smaller(folder.path())]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(complaint(&output).ends_with("smaller.json: was not measured with --quick\n"));
 }
 
 #[test]
@@ -27,15 +94,66 @@ fn a_file_that_is_no_report_is_named_with_the_place() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     let path = folder.path().join("report.json");
     fs::write(&path, "{\n  \"machine\": 7\n}\n").expect("the file can be written");
-    let path = path.to_str().expect("a plain path");
-    let output = figures(&["report", "--from", path, "--out", folder.path().to_str().expect("a plain path")]);
+    let output = figures(&["report", "--from", text(&path), "--out", text(folder.path())]);
     assert_eq!(output.status.code(), Some(1));
     let complaint = complaint(&output);
     assert!(complaint.contains("report.json: ") && complaint.contains("line 2"), "{complaint}");
 }
 
+/// Takes something out of a report.
+type Hole = fn(&mut serde_json::Value);
+
+#[test]
+fn a_report_with_a_hole_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let stored = fs::read_to_string(STORED).expect("a quick run is stored");
+    let holes: [(&str, Hole); 4] = [
+        ("expected every method of \"quadratic\" with the same classes", |report| {
+            report["kernels"][0]["methods"][1]["classes"] = serde_json::json!([]);
+        }),
+        ("expected at least one kernel, one tree and one picture", |report| {
+            report["trees"] = serde_json::json!([]);
+        }),
+        ("expected a picture in base64", |report| {
+            report["pictures"][7]["methods"][1]["png"] = "no picture".into();
+        }),
+        ("expected a time above 0 for quadratic, textbook f32, ordinary", |report| {
+            report["kernels"][0]["methods"][0]["classes"][0]["time"]["median"] = 0.0.into();
+        }),
+    ];
+    for (expected, hole) in holes {
+        let mut report: serde_json::Value = serde_json::from_str(&stored).expect("it is JSON");
+        hole(&mut report);
+        let path = folder.path().join("report.json");
+        fs::write(&path, report.to_string()).expect("the file can be written");
+        let output = figures(&["report", "--from", text(&path), "--out", text(folder.path())]);
+        assert_eq!(output.status.code(), Some(1), "{expected}");
+        let complaint = complaint(&output);
+        assert!(complaint.contains(expected), "{complaint}");
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_named() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let file = folder.path().join("file");
+    fs::write(&file, "").expect("the file can be written");
+    let below = file.join("report");
+    let output = figures(&["report", "--from", STORED, "--out", text(&below)]);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = complaint(&output);
+    assert!(complaint.starts_with(&format!("error: {}: ", text(&below))), "{complaint}");
+}
+
 #[test]
 fn options_that_contradict_are_wrong_usage() {
-    let output = figures(&["report", "--quick", "--from", "report.json"]);
-    assert_eq!(output.status.code(), Some(2));
+    for arguments in [
+        &["report", "--quick", "--from", "report.json"][..],
+        &["report", "--check", "report.json", "--from", "report.json"],
+        &["report", "--factor", "2"],
+        &["report", "--check", "report.json", "--factor", "0.5"],
+        &["report", "--check", "report.json", "--factor", "nan"],
+    ] {
+        assert_eq!(figures(arguments).status.code(), Some(2), "{arguments:?}");
+    }
 }

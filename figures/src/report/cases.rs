@@ -3,100 +3,12 @@
 //! Everything follows from a fixed seed.
 
 use super::methods::COUNT;
+use super::random::{Random, combination, cross, join, length, plus, size};
 
 /// A named set of cases of `M` numbers.
 pub(super) struct Class<const M: usize> {
     pub(super) name: &'static str,
     pub(super) cases: Vec<[f64; M]>,
-}
-
-/// Pseudo-random numbers (splitmix64).
-pub(super) struct Random(u64);
-
-impl Random {
-    pub(super) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// A number in `low..high`.
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-
-    /// A whole number in `low..=high`.
-    fn whole(&mut self, low: i32, high: i32) -> f64 {
-        self.within(f64::from(low), f64::from(high) + 1.0).floor()
-    }
-
-    fn sign(&mut self) -> f64 {
-        if self.bits() & 1 == 0 { 1.0 } else { -1.0 }
-    }
-
-    /// A number of either sign whose exponent to base 10 is in `low..high`.
-    fn exponent(&mut self, low: f64, high: f64) -> f64 {
-        self.sign() * self.within(1.0, 10.0) * size(self.within(low, high))
-    }
-
-    pub(super) fn vector(&mut self, size: f64) -> [f64; 3] {
-        [0; 3].map(|_| self.within(-size, size))
-    }
-
-    fn whole_vector(&mut self, size: i32) -> [f64; 3] {
-        [0; 3].map(|_| self.whole(-size, size))
-    }
-
-    /// A vector of length 1.
-    fn unit(&mut self) -> [f64; 3] {
-        loop {
-            let v = self.vector(1.0);
-            let length = length(v);
-            if (0.1..1.0).contains(&length) {
-                return v.map(|x| x / length);
-            }
-        }
-    }
-
-    /// The number itself or one of its neighbours.
-    fn near(&mut self, x: f64) -> f64 {
-        let step = self.bits() % 5;
-        if x == 0.0 { x } else { f64::from_bits(x.to_bits() + step - 2) }
-    }
-}
-
-/// Returns the power of two below `10^exponent`, the same on every platform.
-fn size(exponent: f64) -> f64 {
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent in the range of f64")]
-    let binary = (exponent * std::f64::consts::LOG2_10).floor() as i32;
-    f64::from_bits(u64::from((binary + 1023).clamp(1, 2046).unsigned_abs()) << 52)
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
-}
-
-fn plus(a: [f64; 3], b: [f64; 3], s: f64) -> [f64; 3] {
-    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-fn combination(a: [f64; 3], s: f64, b: [f64; 3], t: f64) -> [f64; 3] {
-    plus(a.map(|x| x * s), b, t)
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Joins vectors and numbers to one case.
-fn join<const M: usize>(parts: &[&[f64]]) -> [f64; M] {
-    let numbers: Vec<f64> = parts.concat();
-    numbers.try_into().expect("the parts have the length of a case")
 }
 
 /// Makes `count` cases that pass `valid`.
@@ -129,7 +41,7 @@ pub(super) fn quadratic(count: usize) -> Vec<Class<3>> {
         class("roots far apart", |r| [r.within(-1.0, 1.0), r.exponent(3.0, 12.0), r.within(-1.0, 1.0)]),
         class("whole range", |r| [0; 3].map(|_| r.exponent(-307.0, 307.0))),
         class("subnormal", |r| r.whole_vector(20).map(|x| x * f64::from_bits(1))),
-        class("zero coefficients", |r| r.whole_vector(1)),
+        class("zero coefficients, signed", |r| r.signed_vector(1)),
     ]
 }
 
@@ -165,6 +77,20 @@ pub(super) fn sphere(count: usize) -> Vec<Class<10>> {
             let (center, radius) = (r.vector(5.0), r.within(0.1, 3.0));
             join(&[&plus(center, r.unit(), radius), &r.unit(), &center, &[radius]])
         }),
+        class("origin just off the surface", |r| {
+            let (center, radius) = (r.vector(5.0), r.within(0.1, 3.0));
+            let (outward, off) = (r.unit(), r.exponent(-16.0, -6.0));
+            join(&[&plus(center, outward, radius + off), &r.unit(), &center, &[radius]])
+        }),
+        class("along an axis, signed zeros", |r| {
+            let (origin, d) = (r.signed_vector(3), r.signed_vector(1));
+            join(&[&origin, &d, &r.signed_vector(1), &[r.whole(0, 2)]])
+        }),
+        class("subnormal", |r| {
+            let [origin, center] = [9, 2].map(|reach| r.whole_vector(reach));
+            let d = r.whole_vector(9);
+            join::<10>(&[&origin, &d, &center, &[r.whole(1, 4)]]).map(|x| x * f64::from_bits(1))
+        }),
         class("radius 0", |r| {
             let (origin, d) = (r.whole_vector(9), r.whole_vector(9));
             join(&[&origin, &d, &plus(origin, d, r.whole(0, 4)).map(|x| r.near(x)), &[0.0]])
@@ -186,6 +112,7 @@ fn aimed(r: &mut Random, weights: [f64; 3]) -> ([[f64; 3]; 3], [f64; 3]) {
     (vertices.map(|v| v.map(|x| x * sum)), point)
 }
 
+/// Rays and triangles: for the hit, and for the weights of the vertices at it.
 pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
     let valid = |case: &[f64; 15]| case[3..6] != [0.0; 3];
     let class = |name, make: fn(&mut Random) -> [f64; 15]| class(name, count, valid, make);
@@ -227,11 +154,33 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let d = r.whole_vector(99);
             join(&[&plus(target, d, -2.0), &d, &a, &b, &c])
         }),
+        class("ray in the plane", |r| {
+            let [a, b, c] = [0; 3].map(|_| r.whole_vector(9));
+            let d = plus(plus(b, a, -1.0), plus(c, a, -1.0), r.whole(-2, 2));
+            join(&[&plus(a, d, -r.whole(0, 3)), &d, &a, &b, &c])
+        }),
         class("no area", |r| {
             let (a, edge) = (r.whole_vector(99), r.whole_vector(9));
             let [b, c] = [0; 2].map(|_| plus(a, edge, r.whole(-9, 9)));
             let d = r.whole_vector(9);
             join(&[&plus(a, d, -1.0), &d, &a, &b, &c])
+        }),
+        class("along an axis, signed zeros", |r| {
+            let [origin, d, a, b, c] = [2, 1, 2, 2, 2].map(|reach| r.signed_vector(reach));
+            join(&[&origin, &d, &a, &b, &c])
+        }),
+        class("decimal coordinates", |r| {
+            // Rays at a point of an edge, all rounded to a tenth: nearly exact ties.
+            let [a, b] = [0; 2].map(|_| r.whole_vector(99).map(|x| x / 10.0));
+            let c = r.whole_vector(99).map(|x| x / 10.0);
+            let (origin, share) = (r.whole_vector(99).map(|x| x / 10.0), r.whole(0, 10) / 10.0);
+            let target = plus(a, plus(b, a, -1.0), share);
+            join(&[&origin, &plus(target, origin, -1.0), &a, &b, &c])
+        }),
+        class("subnormal", |r| {
+            let [origin, a, b, c] = [9, 5, 5, 5].map(|reach| r.whole_vector(reach));
+            let d = plus(r.whole_vector(3), origin, -1.0);
+            join::<15>(&[&origin, &d, &a, &b, &c]).map(|x| x * f64::from_bits(1))
         }),
         class("whole range", |r| {
             let (scale, stretch) = (size(r.within(-300.0, 300.0)), size(r.within(-300.0, 300.0)));
@@ -284,6 +233,15 @@ pub(super) fn inside(count: usize) -> Vec<Class<12>> {
             let c = plus(plus(a, edge, r.within(0.2, 0.8)), r.unit(), size(r.within(-15.0, -6.0)));
             join(&[&plus(a, edge, r.within(0.0, 1.0)), &a, &plus(a, edge, 1.0), &c])
         }),
+        class("no area", |r| {
+            let (a, edge) = (r.whole_vector(99), r.whole_vector(9));
+            let [p, b, c] = [0; 3].map(|_| plus(a, edge, r.whole(-9, 9)));
+            join(&[&p, &a, &b, &c])
+        }),
+        class("subnormal", |r| {
+            let [p, a, b, c] = [3, 5, 5, 5].map(|reach| r.whole_vector(reach));
+            join::<12>(&[&p, &a, &b, &c]).map(|x| x * f64::from_bits(1))
+        }),
         class("whole range", |r| {
             let scale = size(r.within(-300.0, 300.0));
             let [p, a, b, c] = [1.0, 3.0, 3.0, 3.0].map(|size| r.vector(size).map(|x| x * scale));
@@ -320,9 +278,43 @@ pub(super) fn pseudo_inverse(count: usize) -> Vec<Class<9>> {
             let rows = [0; 3].map(|_| combination(p, r.whole(-9, 9), q, r.whole(-9, 9)).map(|x| r.near(x)));
             std::array::from_fn(|i| rows[i % 3][i / 3])
         }),
+        class("signed zeros", |r| join(&[&r.signed_vector(1), &r.signed_vector(1), &r.signed_vector(1)])),
+        class("subnormal", |r| [0; 9].map(|_| r.whole(-99, 99) * f64::from_bits(1))),
         class("whole range", |r| {
             let scale = size(r.within(-290.0, 290.0));
             [0; 9].map(|_| r.within(-1.0, 1.0) * scale)
+        }),
+    ]
+}
+
+/// The three vertices of a triangle, for the plane through them.
+pub(super) fn plane(count: usize) -> Vec<Class<9>> {
+    let class = |name, make: fn(&mut Random) -> [f64; 9]| class(name, count, |_| true, make);
+    vec![
+        class("ordinary", |r| [0; 9].map(|_| r.within(-3.0, 3.0))),
+        class("far from the origin", |r| {
+            let far = r.unit().map(|x| x * 1e6);
+            let [a, b, c] = [0; 3].map(|_| plus(far, r.vector(1.0), 1.0));
+            join(&[&a, &b, &c])
+        }),
+        class("sliver", |r| {
+            let (a, edge) = (r.vector(3.0), r.vector(2.0));
+            let c = plus(plus(a, edge, r.within(0.2, 0.8)), r.unit(), size(r.within(-12.0, -4.0)));
+            join(&[&a, &plus(a, edge, 1.0), &c])
+        }),
+        class("nearly through the origin", |r| {
+            let (p, q) = (r.vector(1.0), r.vector(1.0));
+            let [a, b, c] = [0; 3].map(|_| combination(p, r.within(-3.0, 3.0), q, r.within(-3.0, 3.0)));
+            join(&[&a, &b, &c])
+        }),
+        class("through the origin", |r| {
+            let (p, q) = (r.whole_vector(99), r.whole_vector(99));
+            let [a, b, c] = [0; 3].map(|_| combination(p, r.whole(-9, 9), q, r.whole(-9, 9)));
+            join(&[&a, &b, &c])
+        }),
+        class("whole range", |r| {
+            let scale = size(r.within(-290.0, 290.0));
+            [0; 9].map(|_| r.within(-3.0, 3.0) * scale)
         }),
     ]
 }
@@ -350,6 +342,10 @@ pub(super) fn reflection(count: usize) -> Vec<Class<6>> {
             let (nn, rest) = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2], v[1] * n[1] + v[2] * n[2]);
             join(&[&[r.near(2.0 * rest * n[0] / (nn - 2.0 * n[0] * n[0])), v[1], v[2]], &n])
         }),
+        class("along an axis, signed zeros", |r| join(&[&r.signed_vector(2), &r.signed_vector(1)])),
+        class("subnormal", |r| {
+            join::<6>(&[&r.whole_vector(20), &r.whole_vector(20)]).map(|x| x * f64::from_bits(1))
+        }),
         class("whole range", |r| {
             let (scale, stretch) = (size(r.within(-300.0, 300.0)), size(r.within(-300.0, 300.0)));
             join(&[&r.vector(1.0).map(|x| x * scale), &r.vector(1.0).map(|x| x * stretch)])
@@ -376,10 +372,68 @@ pub(super) fn mapping(count: usize) -> Vec<Class<3>> {
             let pole = r.sign();
             [r.within(-1.0, 1.0) * tiny, r.near(pole), r.within(-1.0, 1.0) * tiny]
         }),
-        class("axes", |r| r.whole_vector(1)),
+        class("axes, signed zeros", |r| r.signed_vector(1)),
         class("whole range", |r| [0; 3].map(|_| r.exponent(-307.0, 307.0))),
         class("subnormal", |r| r.whole_vector(20).map(|x| x * f64::from_bits(1))),
     ]
+}
+
+/// Point, direction, normal, light, shininess.
+pub(super) fn phong(count: usize) -> Vec<Class<13>> {
+    let valid =
+        |case: &[f64; 13]| case[3..6] != [0.0; 3] && case[6..9] != [0.0; 3] && case[9..12] != case[..3];
+    let class = |name, make: fn(&mut Random) -> [f64; 13]| class(name, count, valid, make);
+    vec![
+        class("ordinary", |r| {
+            let (point, normal) = (r.vector(2.0), r.unit());
+            let light = plus(point, plus(r.unit(), normal, 1.0), 5.0);
+            join(&[&point, &plus(r.unit(), normal, -1.0), &normal, &light, &[r.whole(1, 60)]])
+        }),
+        class("grazing view", |r| {
+            let (point, normal) = (r.vector(2.0), r.unit());
+            let view = plus(cross(normal, r.unit()), normal, -size(r.within(-16.0, -3.0)));
+            let light = plus(point, plus(r.unit(), normal, 1.0), 5.0);
+            join(&[&point, &view, &normal, &light, &[r.whole(1, 60)]])
+        }),
+        class("grazing light", |r| {
+            let (point, normal) = (r.vector(2.0), r.unit());
+            let towards = plus(cross(normal, r.unit()), normal, r.exponent(-16.0, -3.0));
+            let light = plus(point, towards, 5.0);
+            join(&[&point, &plus(r.unit(), normal, -1.0), &normal, &light, &[r.whole(1, 60)]])
+        }),
+        class("highlight, shininess to 10⁴", |r| highlight(r, 0.1)),
+        class("grazing highlight, shininess to 10⁴", |r| {
+            let flat = size(r.within(-6.0, -1.0));
+            highlight(r, flat)
+        }),
+        class("normal and direction of any length", |r| {
+            let (normal, d) = (r.exponent(-100.0, 100.0), r.exponent(-100.0, 100.0));
+            let shininess = [r.whole(1, 60)];
+            join(&[
+                &r.vector(2.0),
+                &r.unit().map(|x| x * d),
+                &r.unit().map(|x| x * normal),
+                &r.vector(5.0),
+                &shininess,
+            ])
+        }),
+        class("light very near", |r| {
+            let (point, normal) = (r.vector(2.0), r.unit());
+            let light = plus(point, plus(r.unit(), normal, 1.0), size(r.within(-12.0, -3.0)));
+            join(&[&point, &plus(r.unit(), normal, -1.0), &normal, &light, &[r.whole(1, 60)]])
+        }),
+    ]
+}
+
+/// Seen near the mirrored direction, `flat` above the surface: where the power is steep.
+fn highlight(r: &mut Random, flat: f64) -> [f64; 13] {
+    let (point, normal) = (r.vector(2.0), r.unit());
+    let along = cross(normal, r.unit());
+    let light = plus(point, plus(along, normal, flat), 5.0);
+    let off = size(r.within(-8.0, -1.0));
+    let view = plus(plus(along, normal, -flat), r.unit(), off * flat);
+    let shininess = size(r.within(0.0, 4.0)).max(1.0);
+    join(&[&point, &view, &normal, &light, &[shininess]])
 }
 
 pub(super) fn enclosing(count: usize) -> Vec<Class<{ 4 * COUNT }>> {
@@ -399,6 +453,20 @@ pub(super) fn enclosing(count: usize) -> Vec<Class<{ 4 * COUNT }>> {
             }
             balls[..4].copy_from_slice(&[center[0], center[1], center[2], radius]);
             balls
+        }),
+        class("all the same", |r| {
+            let (center, radius) = (r.vector(5.0), r.within(0.0, 2.0));
+            eight(r, |_| (center, radius))
+        }),
+        class("centers on a line", |r| {
+            let (start, along) = (r.vector(5.0), r.vector(1.0));
+            eight(r, |r| (plus(start, along, r.within(-5.0, 5.0)), r.within(0.0, 1.0)))
+        }),
+        class("tiny beside huge", |r| {
+            eight(r, |r| {
+                let scale = size(r.within(-12.0, 0.0));
+                (r.vector(5.0), scale)
+            })
         }),
         class("far from the origin", |r| {
             eight(r, |r| ([r.within(-1.0, 1.0), r.within(-1.0, 1.0), 1e8], r.within(0.1, 1.0)))

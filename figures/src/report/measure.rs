@@ -18,6 +18,10 @@ pub(super) struct Effort {
     pub(super) rounds: usize,
     /// Nanoseconds that one timing takes at least.
     pub(super) timing: u64,
+    /// Spheres in the largest cloud.
+    pub(super) spheres: usize,
+    /// Rows of a picture; it is 4 to 3 wide.
+    pub(super) rows: u32,
 }
 
 /// All that was measured of one kernel.
@@ -28,6 +32,8 @@ pub(super) struct Kernel {
     pub(super) verdict: Option<String>,
     /// What the values are, or nothing if there are none.
     pub(super) values: Option<String>,
+    /// Whether a verdict that is too high costs time alone, as in a cull.
+    pub(super) one_sided: bool,
     pub(super) methods: Vec<Measured>,
 }
 
@@ -47,10 +53,38 @@ pub(super) struct Measured {
 pub(super) struct Cell {
     pub(super) class: String,
     pub(super) errors: Errors,
-    /// Nanoseconds for one case: median, least and 95th percentile of the rounds.
+    /// Nanoseconds for one case.
+    pub(super) time: Time,
+}
+
+/// What the rounds of a timing gave.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Time {
     pub(super) median: f64,
     pub(super) least: f64,
+    /// The 95th percentile.
     pub(super) p95: f64,
+}
+
+/// A timing is noisy if its 95th percentile is above its median by more than this share.
+pub(super) const NOISY: f64 = 0.10;
+
+impl Time {
+    /// Returns the percentiles of at least one time.
+    pub(super) fn of(mut times: Vec<f64>) -> Self {
+        times.sort_by(f64::total_cmp);
+        let percentile = |p: usize| times[(times.len() - 1) * p / 100];
+        Self { median: percentile(50), least: percentile(0), p95: percentile(95) }
+    }
+
+    /// By which share the 95th percentile is above the median.
+    pub(super) fn spread(&self) -> f64 {
+        self.p95 / self.median - 1.0
+    }
+
+    pub(super) fn is_noisy(&self) -> bool {
+        self.spread() > NOISY
+    }
 }
 
 /// Errors, which are the same in every run.
@@ -58,6 +92,8 @@ pub(super) struct Cell {
 pub(super) struct Errors {
     pub(super) cases: usize,
     pub(super) wrong_verdicts: usize,
+    /// Those of them that are too low: a hit or a root lost, a rank too small.
+    pub(super) lost: usize,
     /// Values where the verdict was right.
     pub(super) values: usize,
     /// Those that are not the double nearest to the exact value.
@@ -68,8 +104,8 @@ pub(super) struct Errors {
     pub(super) median_ulp: f64,
     pub(super) max_ulp: f64,
     /// The case with the largest error, and the first with a wrong verdict, as the bits of its numbers.
-    pub(super) worst: Option<Vec<String>>,
-    pub(super) first_wrong: Option<Vec<String>>,
+    pub(super) worst: Option<String>,
+    pub(super) first_wrong: Option<String>,
 }
 
 /// Above all distances between doubles.
@@ -82,6 +118,7 @@ impl Measured {
         for Cell { errors, .. } in &self.classes {
             total.cases += errors.cases;
             total.wrong_verdicts += errors.wrong_verdicts;
+            total.lost += errors.lost;
             total.values += errors.values;
             total.not_nearest += errors.not_nearest;
             total.nan += errors.nan;
@@ -91,8 +128,8 @@ impl Measured {
     }
 
     /// Nanoseconds for one ordinary case.
-    pub(super) fn time(&self) -> f64 {
-        self.classes[0].median
+    pub(super) fn time(&self) -> Time {
+        self.classes[0].time
     }
 }
 
@@ -118,15 +155,16 @@ pub(super) fn kernel<const M: usize, const N: usize>(
         .collect();
     for class in classes {
         let truths: Vec<Answer<N>> = class.cases.par_iter().map(reference).collect();
-        let times = times(methods, &class.cases, effort);
-        for ((method, measured), times) in methods.iter().zip(&mut measured).zip(times) {
-            let percentile = |p: usize| times[(times.len() - 1) * p / 100];
+        let mut answers = vec![Answer::without_values(0); class.cases.len()];
+        let times = take_turns(methods.len(), class.cases.len(), effort, |i| {
+            (methods[i].run)(black_box(&class.cases), &mut answers);
+            black_box(&mut answers);
+        });
+        for ((method, measured), time) in methods.iter().zip(&mut measured).zip(times) {
             measured.classes.push(Cell {
                 class: class.name.to_owned(),
                 errors: errors(method, &class.cases, &truths, judge),
-                median: percentile(50),
-                least: percentile(0),
-                p95: percentile(95),
+                time,
             });
         }
     }
@@ -134,27 +172,24 @@ pub(super) fn kernel<const M: usize, const N: usize>(
         name: name.to_owned(),
         verdict: described(verdict),
         values: described(values),
+        one_sided: false,
         methods: measured,
     }
 }
 
-/// Returns the nanoseconds for one case, of each method in each round, ascending. Methods take turns.
-fn times<const M: usize, const N: usize>(
-    methods: &[Method<M, N>],
-    cases: &[[f64; M]],
+/// Returns the nanoseconds for one case, of each of `count` methods, which take turns. `run` runs one over all cases.
+pub(super) fn take_turns(
+    count: usize,
+    cases: usize,
     effort: Effort,
-) -> Vec<Vec<f64>> {
-    let mut answers = vec![Answer::without_values(0); cases.len()];
-    let mut time = |method: &Method<M, N>, passes: u64| {
+    mut run: impl FnMut(usize),
+) -> Vec<Time> {
+    let mut time = |method: usize, passes: u64| {
         let start = Instant::now();
-        for _ in 0..passes {
-            (method.run)(black_box(cases), &mut answers);
-            black_box(&mut answers);
-        }
+        (0..passes).for_each(|_| run(method));
         start.elapsed().as_nanos() as f64
     };
-    let passes: Vec<u64> = methods
-        .iter()
+    let passes: Vec<u64> = (0..count)
         .map(|method| {
             time(method, 1);
             let once = time(method, 1).max(1.0);
@@ -163,16 +198,19 @@ fn times<const M: usize, const N: usize>(
             passes.max(1)
         })
         .collect();
-    let mut times = vec![Vec::new(); methods.len()];
+    let mut times = vec![Vec::new(); count];
     for _ in 0..effort.rounds {
-        for ((method, &passes), times) in methods.iter().zip(&passes).zip(&mut times) {
-            times.push(time(method, passes) / passes as f64 / cases.len() as f64);
+        for ((method, &passes), times) in passes.iter().enumerate().zip(&mut times) {
+            times.push(time(method, passes) / passes as f64 / cases as f64);
         }
     }
-    for times in &mut times {
-        times.sort_by(f64::total_cmp);
-    }
-    times
+    times.into_iter().map(Time::of).collect()
+}
+
+/// Returns the bits of the numbers, from which a case can be run again.
+pub(super) fn hexadecimal(case: &[f64]) -> String {
+    let words: Vec<String> = case.iter().map(|x| format!("{:016x}", x.to_bits())).collect();
+    words.join(" ")
 }
 
 fn errors<const M: usize, const N: usize>(
@@ -187,9 +225,10 @@ fn errors<const M: usize, const N: usize>(
     let mut distances = Vec::new();
     for ((case, &answer), truth) in cases.iter().zip(&answers).zip(truths) {
         let answer = judge(case, answer);
-        let bits = || Some(case.iter().map(|x| format!("{:#018x}", x.to_bits())).collect());
+        let bits = || Some(hexadecimal(case));
         if answer.verdict != truth.verdict {
             errors.wrong_verdicts += 1;
+            errors.lost += usize::from(answer.verdict < truth.verdict);
             errors.first_wrong = errors.first_wrong.or_else(bits);
             continue;
         }

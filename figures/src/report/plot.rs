@@ -3,11 +3,12 @@
 //! A mark is at the largest error on ordinary cases, and a line leads from it to the largest error on all classes. An error of
 //! zero has its own column at the left, NaN one at the right; the scale between them is logarithmic. A method is
 //! hollow if another is no worse in time, both errors and wrong verdicts; those that no other beats in time and ordinary error
-//! are joined. A triangle marks wrong verdicts. Blue and orange are Okabe and Ito's, told apart by all; colours follow the reader's
+//! are joined. A triangle marks wrong verdicts, a whisker leads from the least time to the 95th percentile. Blue and orange are Okabe and Ito's, told apart by all; colours follow the reader's
 //! light or dark setting.
 
 use std::fmt::Write;
 
+use super::labels::Labels;
 use super::measure::{Errors, Kernel, Measured, NAN_DISTANCE};
 
 const WIDTH: f64 = 800.0;
@@ -26,7 +27,9 @@ struct Point<'a> {
     x: f64,
     x_all: f64,
     y: f64,
-    /// The share of wrong verdicts.
+    /// Where the least time and the 95th percentile are.
+    whisker: [f64; 2],
+    /// The share of wrong verdicts, of a cull those that are lost.
     wrong: f64,
     /// Nanoseconds, error on ordinary cases, on all, and the share of wrong verdicts.
     costs: [f64; 4],
@@ -51,13 +54,23 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
             };
             let total = method.total();
             let (ordinary, all) = (error(&method.classes[0].errors), error(&total));
-            let wrong = share(&total);
-            let costs = [method.time(), ordinary, all, wrong];
+            let wrong = if kernel.one_sided { total.lost as f64 / total.cases as f64 } else { share(&total) };
+            let costs = [method.time().median, ordinary, all, wrong];
             let [x, x_all] = [ordinary, all].map(|error| across(error, decades));
-            Point { method, x, x_all, y: 0.0, wrong, costs, dominated: false, on_front: false }
+            Point {
+                method,
+                x,
+                x_all,
+                y: 0.0,
+                whisker: [0.0; 2],
+                wrong,
+                costs,
+                dominated: false,
+                on_front: false,
+            }
         })
         .collect();
-    let times = points.iter().map(|point| point.method.time());
+    let times = points.iter().map(|point| point.method.time().median);
     let (low, high) = times.fold((f64::MAX, 0.0f64), |(low, high), t| (low.min(t), high.max(t)));
     let (low, high) = (low.log10() - 0.15, high.log10() + 0.2);
     for i in 0..points.len() {
@@ -71,8 +84,10 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
             })
         };
         let (dominated, on_front) = (beaten_in(&[0, 1, 2, 3]), !beaten_in(&[0, 1]));
-        let y = TOP + (HEIGHT - TOP - BOTTOM) * (high - point.method.time().log10()) / (high - low);
-        points[i] = Point { dominated, on_front, y, ..points[i] };
+        let up = |time: f64| TOP + (HEIGHT - TOP - BOTTOM) * (high - time.log10()) / (high - low);
+        let time = point.method.time();
+        let (y, whisker) = (up(time.median), [time.least, time.p95.min(10f64.powf(high))].map(up));
+        points[i] = Point { dominated, on_front, y, whisker, ..points[i] };
     }
 
     let mut svg = String::new();
@@ -192,15 +207,14 @@ fn join_front(svg: &mut String, points: &[Point]) {
 }
 
 fn marks(svg: &mut String, points: &[Point]) {
-    let mut order: Vec<&Point> = points.iter().collect();
-    order.sort_by(|a, b| b.y.total_cmp(&a.y));
-    let mut labels: Vec<(f64, f64)> = Vec::new();
+    let places = points.iter().map(|point| (point.x, point.y));
+    let mut labels = Labels::new(LEFT, WIDTH - RIGHT, places);
     let mut names = String::new();
-    for point in order {
-        let Point { x, y, .. } = *point;
+    for point in points {
+        let Point { x, y, method, .. } = *point;
         let class = format!(
             "mark {}{}",
-            if point.method.ours { "ours" } else { "other" },
+            if method.ours { "ours" } else { "other" },
             if point.dominated { " hollow" } else { "" }
         );
         let shape = if point.wrong > 0.0 {
@@ -208,29 +222,18 @@ fn marks(svg: &mut String, points: &[Point]) {
         } else {
             format!("M {:.1} {y:.1} a 6 6 0 1 0 12 0 a 6 6 0 1 0 -12 0 z", x - 6.0)
         };
+        let [least, p95] = point.whisker;
         let _ = writeln!(
             svg,
-            r#"<line class="{class} reach" x1="{x:.1}" y1="{y:.1}" x2="{:.1}" y2="{y:.1}"/><path class="{class}" d="{shape}"/>"#,
+            r#"<path class="{class} reach" d="M {x:.1} {y:.1} H {:.1} M {x:.1} {least:.1} V {p95:.1}"/><path class="{class}" d="{shape}"/>"#,
             point.x_all
         );
-        // A label goes above the line at its mark, and further up if another is there.
-        let to_left = x > 0.62 * WIDTH;
-        let mut label_y = y - 4.0;
-        while labels.iter().any(|&(lx, ly)| (lx - x).abs() < 230.0 && (ly - label_y).abs() < 14.0) {
-            label_y -= 2.0;
-        }
-        labels.push((x, label_y));
         let text = if point.wrong > 0.0 {
-            format!("{} ({} wrong)", point.method.name, percent(point.wrong))
+            format!("{} ({} wrong)", method.name, percent(point.wrong))
         } else {
-            point.method.name.clone()
+            method.name.clone()
         };
-        let (anchor, label_x) = if to_left { ("end", x - 11.0) } else { ("start", x + 11.0) };
-        let _ = writeln!(
-            names,
-            r#"<text class="name" x="{label_x:.1}" y="{label_y:.1}" text-anchor="{anchor}">{}</text>"#,
-            escape(&text)
-        );
+        names += &labels.place((x, y), &text);
     }
     // Names come last, so that no line crosses them.
     svg.push_str(&names);

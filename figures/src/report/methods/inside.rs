@@ -50,10 +50,3 @@ fn barycentric(point: Vector<f64>, [a, b, c]: [Vector<f64>; 3]) -> bool {
     let w = (ee * pf - ef * pe) / determinant;
     v >= 0.0 && w >= 0.0 && v + w <= 1.0
 }
-
-/// The plane's `(a, b, c)` in `ax + by + cz = 1`, by Cramer's rule.
-pub(super) fn plain_plane([p, q, r]: [Vector<f64>; 3]) -> Vector<f64> {
-    let normal = cross(sub(q, p), sub(r, p));
-    let offset = dot(normal, p);
-    normal.map(|x| x / offset)
-}

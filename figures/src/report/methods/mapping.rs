@@ -3,9 +3,10 @@
 
 use std::f64::consts::{PI, TAU};
 
+use pxfm::{f_asin, f_atan2, f_hypot};
 use rt_shade::sphere_uv;
 
-use super::real::{Real, dvec3, vector};
+use super::real::{Real, Vector, dvec3, vector};
 use super::{Answer, Method};
 
 /// Returns the methods that give texture coordinates.
@@ -15,8 +16,8 @@ pub(in super::super) fn mapping() -> Vec<Method<3, 2>> {
         Method::new("textbook", "½ + atan2(z, x)/2π, ½ - asin(y)/π", textbook::<f64>),
         Method::new("normalised", "the textbook's, of the normal divided by its length", |case| {
             let normal = dvec3(case, 0).normalize();
-            let v = 0.5 - normal.y.clamp(-1.0, 1.0).asin() / PI;
-            Answer { verdict: 0, values: [0.5 + normal.z.atan2(normal.x) / TAU, v] }
+            let v = 0.5 - f_asin(normal.y.clamp(-1.0, 1.0)) / PI;
+            Answer { verdict: 0, values: [0.5 + f_atan2(normal.z, normal.x) / TAU, v] }
         }),
         Method::new("two atan2, folded", "v by atan2(hypot(x, z), y); u counted from the seam", folded),
         Method::ours("ours", |case| Answer { verdict: 0, values: sphere_uv(dvec3(case, 0)).into() }),
@@ -24,12 +25,16 @@ pub(in super::super) fn mapping() -> Vec<Method<3, 2>> {
 }
 
 fn textbook<T: Real>(case: &[f64; 3]) -> Answer<2> {
-    let [x, y, z] = vector::<T>(case, 0);
+    Answer { verdict: 0, values: textbook_coordinates(vector::<T>(case, 0)).map(T::wide) }
+}
+
+/// The textbook's `u` and `v` of a unit normal.
+pub(in super::super) fn textbook_coordinates<T: Real>([x, y, z]: Vector<T>) -> [T; 2] {
     let (half, pi) = (T::of(0.5), T::of(PI));
-    Answer { verdict: 0, values: [half + z.atan2(x) / (pi + pi), half - y.asin() / pi].map(T::wide) }
+    [half + z.atan2(x) / (pi + pi), half - y.asin() / pi]
 }
 
 fn folded(&[x, y, z]: &[f64; 3]) -> Answer<2> {
-    let u = if x < 0.0 && z.is_sign_negative() { (-z).atan2(-x) / TAU } else { 0.5 + z.atan2(x) / TAU };
-    Answer { verdict: 0, values: [u, x.hypot(z).atan2(y) / PI] }
+    let u = if x < 0.0 && z.is_sign_negative() { f_atan2(-z, -x) / TAU } else { 0.5 + f_atan2(z, x) / TAU };
+    Answer { verdict: 0, values: [u, f_atan2(f_hypot(x, z), y) / PI] }
 }

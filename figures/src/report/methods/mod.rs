@@ -3,24 +3,30 @@
 //! Each is a plain function of the numbers of one case, in the form in which its source gives it: none is tuned, and
 //! none is made safer than its source makes it. Those that are generic run in `f32` and in `f64`.
 
+mod barycentric;
 mod enclosing;
 mod inside;
 mod mapping;
+mod phong;
+mod plane;
 mod pseudo_inverse;
 mod quadratic;
-mod real;
+pub(super) mod real;
 mod reflection;
 mod sphere;
 mod triangle;
 
+pub(super) use barycentric::barycentric;
 pub(super) use enclosing::{COUNT, enclosing};
 pub(super) use inside::inside;
-pub(super) use mapping::mapping;
-pub(super) use pseudo_inverse::pseudo_inverses;
+pub(super) use mapping::{mapping, textbook_coordinates};
+pub(super) use phong::{MATERIAL, phong, terms};
+pub(super) use plane::plane;
+pub(super) use pseudo_inverse::pseudo_inverse;
 pub(super) use quadratic::quadratic;
 pub(super) use reflection::reflection;
-pub(super) use sphere::sphere;
-pub(super) use triangle::triangle;
+pub(super) use sphere::{sphere, textbook_roots};
+pub(super) use triangle::{crossing, triangle};
 
 /// What a method answers for one case: a verdict, and values that mean something only with the right verdict.
 ///

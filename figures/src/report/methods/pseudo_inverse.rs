@@ -2,13 +2,13 @@
 //! entries by columns.
 
 use glam::DMat3;
-use rt_math::{pseudo_inverse, pseudo_inverse_with_tolerance};
+use rt_math::{pseudo_inverse as ours, pseudo_inverse_with_tolerance};
 
 use super::real::{Real, cross, dot, vector};
 use super::{Answer, Method};
 
 /// Returns the methods that give a pseudo-inverse.
-pub(in super::super) fn pseudo_inverses() -> Vec<Method<9, 9>> {
+pub(in super::super) fn pseudo_inverse() -> Vec<Method<9, 9>> {
     vec![
         Method::new("adjugate f32", "adj A / det A", adjugate::<f32>),
         Method::new("adjugate", "adj A / det A", adjugate::<f64>),
@@ -18,7 +18,7 @@ pub(in super::super) fn pseudo_inverses() -> Vec<Method<9, 9>> {
             answer(result.rank, result.matrix.to_cols_array())
         }),
         Method::ours("ours", |case| {
-            let result = pseudo_inverse(DMat3::from_cols_array(case));
+            let result = ours(DMat3::from_cols_array(case));
             answer(result.rank, result.matrix.to_cols_array())
         }),
     ]

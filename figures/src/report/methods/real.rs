@@ -1,11 +1,13 @@
 //! Single and double precision, for methods that are compared in both.
+//!
+//! Angles are the crate pxfm's, correctly rounded, and not the system library's: its last bits are not the same everywhere.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::DVec3;
 
 /// A floating-point number.
-pub(super) trait Real:
+pub(in super::super) trait Real:
     Copy
     + PartialOrd
     + Add<Output = Self>
@@ -16,6 +18,10 @@ pub(super) trait Real:
 {
     /// The number nearest to `x`.
     fn of(x: f64) -> Self;
+    /// The least number that is not below `x`.
+    fn at_least(x: f64) -> Self;
+    /// Half the spacing of numbers at 1.
+    const HALF_ULP: f64;
     /// The same number in double precision.
     fn wide(self) -> f64;
     fn sqrt(self) -> Self;
@@ -26,7 +32,7 @@ pub(super) trait Real:
 }
 
 macro_rules! real {
-    ($float:ident) => {
+    ($float:ident, $atan2:ident, $asin:ident) => {
         impl Real for $float {
             #[allow(
                 clippy::cast_possible_truncation,
@@ -36,6 +42,12 @@ macro_rules! real {
             fn of(x: f64) -> Self {
                 x as $float
             }
+            fn at_least(x: f64) -> Self {
+                let nearest = Self::of(x);
+                if nearest.wide() < x { nearest.next_up() } else { nearest }
+            }
+            #[allow(clippy::unnecessary_cast, reason = "f64 is among the two")]
+            const HALF_ULP: f64 = $float::EPSILON as f64 / 2.0;
             fn wide(self) -> f64 {
                 f64::from(self)
             }
@@ -49,47 +61,66 @@ macro_rules! real {
                 $float::copysign(self, sign)
             }
             fn atan2(self, x: Self) -> Self {
-                $float::atan2(self, x)
+                pxfm::$atan2(self, x)
             }
             fn asin(self) -> Self {
-                $float::asin(self)
+                pxfm::$asin(self)
             }
         }
     };
 }
 
-real!(f32);
-real!(f64);
+real!(f32, f_atan2f, f_asinf);
+real!(f64, f_atan2, f_asin);
 
 /// A vector with components of either precision.
-pub(super) type Vector<T> = [T; 3];
+pub(in super::super) type Vector<T> = [T; 3];
 
 /// Returns components `from`, `from + 1` and `from + 2` of a case.
-pub(super) fn vector<T: Real>(case: &[f64], from: usize) -> Vector<T> {
+pub(in super::super) fn vector<T: Real>(case: &[f64], from: usize) -> Vector<T> {
     [case[from], case[from + 1], case[from + 2]].map(T::of)
 }
 
 /// Returns the same components as a vector of glam's.
-pub(super) fn dvec3(case: &[f64], from: usize) -> DVec3 {
+pub(in super::super) fn dvec3(case: &[f64], from: usize) -> DVec3 {
     DVec3::new(case[from], case[from + 1], case[from + 2])
 }
 
-pub(super) fn sub<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+pub(in super::super) fn sub<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(super) fn add<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+pub(in super::super) fn add<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(super) fn scaled<T: Real>(a: Vector<T>, s: T) -> Vector<T> {
+pub(in super::super) fn scaled<T: Real>(a: Vector<T>, s: T) -> Vector<T> {
     a.map(|x| x * s)
 }
 
-pub(super) fn dot<T: Real>(a: Vector<T>, b: Vector<T>) -> T {
+pub(in super::super) fn dot<T: Real>(a: Vector<T>, b: Vector<T>) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn cross<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+pub(in super::super) fn cross<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// A vector divided by its length.
+pub(in super::super) fn normalized<T: Real>(a: Vector<T>) -> Vector<T> {
+    let length = dot(a, a).sqrt();
+    a.map(|x| x / length)
+}
+
+/// The power with a whole exponent, by repeated squaring: the same bits on every platform.
+pub(in super::super) fn power<T: Real>(base: T, exponent: f64) -> T {
+    let (mut result, mut square, mut rest) = (T::of(1.0), base, exponent);
+    while rest >= 1.0 {
+        if rest % 2.0 >= 1.0 {
+            result = result * square;
+        }
+        square = square * square;
+        rest = (rest / 2.0).floor();
+    }
+    result
 }

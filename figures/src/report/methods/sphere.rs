@@ -64,13 +64,22 @@ impl<T: Real> Problem<T> {
 
 fn textbook<T: Real>(case: &[f64; 10]) -> Answer<1> {
     let Problem { direction, offset, radius } = Problem::<T>::new(case);
+    textbook_roots(direction, offset, radius).map_or(hit(None), |[near, far]| nearest(near, far))
+}
+
+/// The textbook's two roots, if it finds any; `offset` leads from the center to the origin of the ray.
+pub(in super::super) fn textbook_roots<T: Real>(
+    direction: Vector<T>,
+    offset: Vector<T>,
+    radius: T,
+) -> Option<[T; 2]> {
     let (a, b) = (dot(direction, direction), dot(direction, offset));
     let discriminant = b * b - a * (dot(offset, offset) - radius * radius);
     if discriminant < T::of(0.0) {
-        return hit(None);
+        return None;
     }
     let root = discriminant.sqrt();
-    nearest((-b - root) / a, (-b + root) / a)
+    Some([(-b - root) / a, (-b + root) / a])
 }
 
 fn q_form<T: Real>(case: &[f64; 10]) -> Answer<1> {

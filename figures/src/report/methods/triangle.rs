@@ -3,7 +3,8 @@
 
 use rt_geom::{Ray, Triangle};
 
-use super::inside::{orientations, plain_plane};
+use super::inside::orientations;
+use super::plane::plain_plane;
 use super::real::{Real, Vector, add, cross, dot, dvec3, scaled, sub, vector};
 use super::{Answer, Method};
 
@@ -31,7 +32,8 @@ pub(in super::super) fn triangle() -> Vec<Method<15, 1>> {
     ]
 }
 
-fn shapes(case: &[f64; 15]) -> (Ray, Triangle) {
+/// The ray and the triangle of a case.
+pub(super) fn shapes(case: &[f64; 15]) -> (Ray, Triangle) {
     let ray = Ray::new(dvec3(case, 0), dvec3(case, 3)).expect("cases are valid rays");
     let [a, b, c] = [6, 9, 12].map(|from| dvec3(case, from));
     (ray, Triangle::new(a, b, c).expect("cases are valid triangles"))
@@ -42,32 +44,57 @@ fn hit(t: Option<f64>) -> Answer<1> {
 }
 
 fn moller_trumbore<T: Real>(case: &[f64; 15], tolerance: f64) -> Answer<1> {
-    let (origin, direction): (Vector<T>, Vector<T>) = (vector(case, 0), vector(case, 3));
-    let a = vector::<T>(case, 6);
-    let (edge_1, edge_2) = (sub(vector(case, 9), a), sub(vector(case, 12), a));
+    let vertices = [6, 9, 12].map(|from| vector::<T>(case, from));
+    let found = crossing(vector(case, 0), vector(case, 3), vertices, tolerance);
+    hit(found.map(|(t, _, _)| t.wide()))
+}
+
+/// Möller and Trumbore's `t` and the weights of the second and the third vertex, if the line hits.
+pub(in super::super) fn crossing<T: Real>(
+    origin: Vector<T>,
+    direction: Vector<T>,
+    [a, b, c]: [Vector<T>; 3],
+    tolerance: f64,
+) -> Option<(T, T, T)> {
+    let (edge_1, edge_2) = (sub(b, a), sub(c, a));
     let (zero, one) = (T::of(0.0), T::of(1.0));
     let p = cross(direction, edge_2);
     let determinant = dot(edge_1, p);
     if determinant == zero || determinant.abs() < T::of(tolerance) {
-        return hit(None);
+        return None;
     }
     let inverse = one / determinant;
     let s = sub(origin, a);
     let u = dot(s, p) * inverse;
     if u < zero || u > one {
-        return hit(None);
+        return None;
     }
     let q = cross(s, edge_1);
     let v = dot(direction, q) * inverse;
     if v < zero || u + v > one {
-        return hit(None);
+        return None;
     }
-    hit(Some((dot(edge_2, q) * inverse).wide()))
+    Some((dot(edge_2, q) * inverse, u, v))
 }
 
 /// The ray becomes the z axis by a shear; the signs of three areas decide.
 fn woop(case: &[f64; 15]) -> Answer<1> {
     let (origin, d): (Vector<f64>, Vector<f64>) = (vector(case, 0), vector(case, 3));
+    let [u, v, w] = sheared_areas(case);
+    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+        return hit(None);
+    }
+    let determinant = u + v + w;
+    if determinant == 0.0 {
+        return hit(None);
+    }
+    let [_, _, z] = axes(d);
+    let [a, b, c] = [6, 9, 12].map(|from| vector::<f64>(case, from)[z] - origin[z]);
+    hit(Some((1.0 / d[z]) * (u * a + v * b + w * c) / determinant))
+}
+
+/// The axes in an order that keeps turns as they are and has the direction's longest last.
+fn axes(d: Vector<f64>) -> [usize; 3] {
     let size = d.map(f64::abs);
     let z = if size[0] > size[1] {
         if size[0] > size[2] { 0 } else { 2 }
@@ -76,23 +103,30 @@ fn woop(case: &[f64; 15]) -> Answer<1> {
     } else {
         2
     };
-    let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-    if d[z] < 0.0 {
-        std::mem::swap(&mut x, &mut y);
-    }
-    let (shear_x, shear_y, shear_z) = (d[x] / d[z], d[y] / d[z], 1.0 / d[z]);
-    let [a, b, c] = [6, 9, 12].map(|from| sub(vector(case, from), origin));
-    let [(ax, ay), (bx, by), (cx, cy)] =
-        [a, b, c].map(|p: Vector<f64>| (p[x] - shear_x * p[z], p[y] - shear_y * p[z]));
-    let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-        return hit(None);
-    }
-    let determinant = u + v + w;
-    if determinant == 0.0 {
-        return hit(None);
-    }
-    hit(Some(shear_z * (u * a[z] + v * b[z] + w * c[z]) / determinant))
+    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+    if d[z] < 0.0 { [y, x, z] } else { [x, y, z] }
+}
+
+/// The areas opposite to the vertices, as the sheared ray sees them.
+pub(super) fn sheared_areas(case: &[f64; 15]) -> [f64; 3] {
+    let (origin, d): (Vector<f64>, Vector<f64>) = (vector(case, 0), vector(case, 3));
+    let [x, y, z] = axes(d);
+    let (shear_x, shear_y) = (d[x] / d[z], d[y] / d[z]);
+    let [(ax, ay), (bx, by), (cx, cy)] = [6, 9, 12].map(|from| {
+        let p = sub(vector::<f64>(case, from), origin);
+        (p[x] - shear_x * p[z], p[y] - shear_y * p[z])
+    });
+    [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax]
+}
+
+/// Where a line meets the plane of a triangle, and the plane's normal.
+pub(super) fn hit_point(
+    origin: Vector<f64>,
+    direction: Vector<f64>,
+    [a, b, c]: [Vector<f64>; 3],
+) -> (f64, Vector<f64>) {
+    let normal = cross(sub(b, a), sub(c, a));
+    (dot(normal, sub(a, origin)) / dot(normal, direction), normal)
 }
 
 /// The plane as `ax + by + cz = 1`, the point where the ray meets it, then three orientations.

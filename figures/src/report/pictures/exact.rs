@@ -1,0 +1,107 @@
+//! The exact picture: what is seen is decided by the reference, and its colour computed in 400 bits; only the lookup in a
+//! texture, between exact coordinates, is in doubles.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use rt_geom::{Ray, Sphere};
+
+use super::samples;
+use crate::camera::{Size, View};
+use crate::report::reference::{
+    Big, Lamp, coordinates, cross, crossing, exact, long, nearest_root, point_at, rounded, shade, sub,
+    weights,
+};
+use crate::scene::{Filter, Paint, Scene};
+
+/// Returns the samples of a picture.
+pub(super) fn picture(scene: &Scene, view: &View) -> Vec<u8> {
+    let Size { width, height, .. } = view.size();
+    let lamps: Vec<Lamp> = scene
+        .lights
+        .iter()
+        .map(|light| Lamp { position: wide(light.position), color: wide(light.color) })
+        .collect();
+    let pixel = |i: u32| samples(color(scene, &lamps, &view.ray(i % width, i / width)));
+    (0..width * height).into_par_iter().flat_map_iter(pixel).collect()
+}
+
+fn wide(v: DVec3) -> [Big; 3] {
+    v.to_array().map(exact)
+}
+
+fn color(scene: &Scene, lamps: &[Lamp], ray: &Ray) -> DVec3 {
+    let (origin, direction) = (wide(ray.origin()), wide(ray.direction()));
+    let mut best: Option<(Big, usize)> = None;
+    // Equal distances go to the lower index; distances are equal if they round to the same double.
+    let mut offer = |t: Option<Big>, index| {
+        let Some(t) = t else { return };
+        if best.as_ref().is_none_or(|(least, _)| rounded(&t) < rounded(least)) {
+            best = Some((t, index));
+        }
+    };
+    for (index, sphere) in scene.spheres.iter().enumerate() {
+        if !surely_beside(ray, sphere) {
+            let offset = sub(&origin, &wide(sphere.center()));
+            offer(nearest_root(&direction, &offset, &exact(sphere.radius())), index);
+        }
+    }
+    for (index, triangle) in scene.triangles.iter().enumerate() {
+        let vertices = triangle.vertices().map(|vertex| sub(&wide(vertex), &origin));
+        offer(crossing(&direction, &vertices), scene.spheres.len() + index);
+    }
+    let Some((t, index)) = best else { return scene.background };
+    let point = point_at(&origin, &direction, &t);
+    let (look, normal, surface) = match scene.spheres.get(index) {
+        Some(sphere) => {
+            let look = &scene.looks[scene.sphere_looks[index] as usize];
+            let normal = sub(&point, &wide(sphere.center()));
+            let surface = match &look.paint {
+                Paint::Color(color) => wide(*color),
+                Paint::Image { texture, mirrored, filter } => {
+                    let [x, y, z] = normal.clone();
+                    let place = [x, y, if *mirrored { z } else { -z }].map(|c| long(&c));
+                    let [u, v] = coordinates(&place, [0, 1, 2].map(|i| place[i] < Big::ZERO));
+                    let lookup = match filter {
+                        Filter::Nearest => texture.nearest(rounded(&u), rounded(&v)),
+                        Filter::Bilinear => texture.bilinear(rounded(&u), rounded(&v)),
+                    };
+                    wide(lookup)
+                }
+            };
+            (look, normal, surface)
+        }
+        None => {
+            let index = index - scene.spheres.len();
+            let look = &scene.looks[scene.triangle_looks[index] as usize];
+            let [a, b, c] = scene.triangles[index].vertices().map(wide);
+            let normal = cross(&sub(&b, &a), &sub(&c, &a));
+            let surface = match (scene.vertex_colors.get(index), &look.paint) {
+                (Some(Some(colors)), _) => {
+                    let vertices = [a, b, c].map(|vertex| sub(&vertex, &origin));
+                    let weights = weights(&direction, &vertices).expect("the triangle is hit");
+                    let colors = colors.map(wide);
+                    [0, 1, 2].map(|i| {
+                        let parts = weights.iter().zip(&colors).map(|(weight, color)| weight * &color[i]);
+                        parts.fold(Big::ZERO, |sum, part| sum + part)
+                    })
+                }
+                (_, Paint::Color(color)) => wide(*color),
+                (_, Paint::Image { .. }) => unreachable!("a triangle's look has a color"),
+            };
+            (look, normal, surface)
+        }
+    };
+    let material = &look.material;
+    let coefficients = [material.ambient, material.diffuse, material.specular];
+    let color = shade(&point, &direction, &normal, &surface, coefficients, material.shininess, lamps);
+    DVec3::from_array(color.each_ref().map(rounded))
+}
+
+/// Whether a ray passes far beside a sphere: the distance of center and line, in doubles, is above the radius by more than a
+/// millionth of all lengths involved. Rounding does not move it by a billionth; so what is nearer is left to exact numbers.
+fn surely_beside(ray: &Ray, sphere: &Sphere) -> bool {
+    let (d, w) = (ray.direction(), ray.origin() - sphere.center());
+    let middle = w.dot(d) / d.length_squared();
+    let distance = (w - middle * d).length();
+    distance > sphere.radius() + 1e-6 * (ray.origin().length() + sphere.center().length() + sphere.radius())
+}

@@ -1,0 +1,214 @@
+//! Whole pictures: how many pixels each method gets wrong, and how many rays it casts in a second.
+//!
+//! A pixel is wrong if one of its three 8-bit samples is not that of the [exact] picture. The scenes are the six figures,
+//! a crowd of spheres, and three on which rounding shows; of those the pictures themselves are kept.
+
+mod exact;
+pub(super) mod plot;
+mod textbook;
+
+use std::hint::black_box;
+
+use glam::DVec3;
+use rt_geom::{Hit, Ray, Sphere, SphereTree};
+use rt_io::{Pixmap, png};
+use rt_shade::color::{clamp, to_sample};
+use serde::{Deserialize, Serialize};
+
+use super::base64;
+use super::measure::{Effort, Time, take_turns};
+use crate::camera::{Size, View};
+use crate::figure::FIGURES;
+use crate::generate::sphereflake;
+use crate::render::{AHEAD, Renderer};
+use crate::scene::{Look, Scene};
+use crate::scene_file;
+use textbook::Painter;
+
+/// What was measured of all methods on one scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Pictured {
+    pub(super) scene: String,
+    pub(super) group: Group,
+    pub(super) objects: usize,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) methods: Vec<Painted>,
+}
+
+/// What a scene is there for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Group {
+    Figures,
+    Crowd,
+    Hard,
+}
+
+/// What was measured of one method on one scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Painted {
+    pub(super) method: String,
+    pub(super) ours: bool,
+    pub(super) wrong_pixels: usize,
+    /// Nanoseconds for one ray, shading included, on one thread.
+    pub(super) time: Time,
+    /// The picture as PNG in base64, where it is worth a look.
+    pub(super) png: Option<String>,
+}
+
+/// The methods whose pictures are kept, side by side.
+pub(super) const SHOWN: [&str; 2] = ["textbook", "ours, batch"];
+
+/// The scenes on which rounding shows, and what to see there.
+pub(super) const HARD: [(&str, &str, &str); 3] = [
+    (
+        "far sphere",
+        include_str!("../../../scenes/hard/far-sphere.toml"),
+        "A ball of radius 1, thirty million away. The textbook's b² - ac is the difference of two numbers near 10^15: \
+         rings, and an outline in steps.",
+    ),
+    (
+        "shared edges",
+        include_str!("../../../scenes/hard/shared-edges.toml"),
+        "Six triangles that leave no gap, seen so close that neighbouring pixels are neighbouring doubles. White is a crack: \
+         a ray that passed between two triangles with a common edge.",
+    ),
+    (
+        "huge ground",
+        include_str!("../../../scenes/hard/huge-ground.toml"),
+        "Balls on a ground that is a sphere of radius 6·10^15. The textbook's roots cancel: the ground comes in rings, and not where it is.",
+    ),
+];
+
+/// Measures all methods on all scenes, on one thread.
+pub(super) fn pictures(effort: Effort) -> Vec<Pictured> {
+    let embedded = |text, name: &str| {
+        scene_file::embedded(text, name).expect("scenes that are part of the program are valid, a test shows")
+    };
+    let mut pictured = Vec::new();
+    for figure in FIGURES {
+        let scene = || embedded(figure.text, &figure.name());
+        pictured.push(measure(&format!("figure {}", figure.number), Group::Figures, scene, effort));
+    }
+    pictured.push(measure("sphereflake of 820", Group::Crowd, crowd, effort));
+    for (name, text, _) in HARD {
+        pictured.push(measure(name, Group::Hard, || embedded(text, name), effort));
+    }
+    pictured
+}
+
+/// A sphereflake of three generations, lit as any file of spheres is.
+fn crowd() -> Scene {
+    let mut scene = Scene::empty();
+    for (look, ball) in (0..).zip(sphereflake(3)) {
+        scene
+            .spheres
+            .push(Sphere::new(ball.center, ball.radius).expect("a sphereflake's radii are positive"));
+        scene.sphere_looks.push(look);
+        scene.looks.push(Look::colored(ball.color));
+    }
+    scene.set_stage();
+    scene
+}
+
+/// A picture's samples, row by row.
+type Samples = Vec<u8>;
+
+/// Draws a picture.
+type Draw<'a> = Box<dyn Fn() -> Samples + Sync + 'a>;
+
+fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) -> Pictured {
+    let size = Size { width: effort.rows / 3 * 4, height: effort.rows, samples: 1 };
+    let drawn = scene();
+    let view = drawn.view(size).expect("these scenes have a camera that sees them");
+    let truth = exact::picture(&drawn, &view);
+    let single = Painter::<f32>::new(&drawn);
+    let double = Painter::<f64>::new(&drawn);
+    let tree = SphereTree::new(drawn.spheres.clone(), drawn.triangles.clone());
+    let renderer = Renderer::new(scene());
+    let by = |closest: &dyn Fn(&Ray) -> Option<Hit>| paint(&view, |ray| renderer.color(ray, closest(ray)));
+    let methods: [(&str, bool, Draw); 5] = [
+        ("textbook f32", false, Box::new(|| paint(&view, |ray| single.color(ray)))),
+        ("textbook", false, Box::new(|| paint(&view, |ray| double.color(ray)))),
+        ("ours, plain loop", true, Box::new(|| by(&|ray| plain(&drawn, ray)))),
+        ("ours, tree", true, Box::new(|| by(&|ray| tree.closest(ray, AHEAD)))),
+        ("ours, batch", true, Box::new(|| batch(&renderer, &view))),
+    ];
+    // One thread for all: batches would take them all.
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
+    let rays = truth.len() / 3;
+    let (found, times) = alone.install(|| {
+        let found: Vec<Samples> = methods.iter().map(|(_, _, draw)| draw()).collect();
+        let times = take_turns(methods.len(), rays, effort, |i| drop(black_box(methods[i].2())));
+        (found, times)
+    });
+    let methods = methods.iter().zip(found).zip(times).map(|(((method, ours, _), samples), time)| {
+        let wrong = samples.chunks_exact(3).zip(truth.chunks_exact(3)).filter(|(is, should)| is != should);
+        let wrong_pixels = wrong.count();
+        let shown = group == Group::Hard && SHOWN.contains(method);
+        let png = shown.then(|| base64::encode(&as_png(samples, size)));
+        Painted { method: (*method).to_owned(), ours: *ours, wrong_pixels, time, png }
+    });
+    let methods = methods.collect();
+    let objects = drawn.len();
+    Pictured { scene: name.to_owned(), group, objects, width: size.width, height: size.height, methods }
+}
+
+/// Draws a picture ray by ray.
+fn paint(view: &View, color: impl Fn(&Ray) -> DVec3) -> Samples {
+    let Size { width, height, .. } = view.size();
+    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+    pixels.flat_map(|(column, row)| samples(color(&view.ray(column, row)))).collect()
+}
+
+/// The three samples of a pixel.
+fn samples(color: DVec3) -> [u8; 3] {
+    clamp(color).to_array().map(|c| u8::try_from(to_sample(c, 255)).expect("a sample is at most maxval"))
+}
+
+/// The closest hit, by asking every object.
+fn plain(scene: &Scene, ray: &Ray) -> Option<Hit> {
+    let spheres = scene.spheres.iter().map(|sphere| sphere.closest(ray, AHEAD));
+    let triangles = scene.triangles.iter().map(|triangle| triangle.closest(ray, AHEAD));
+    let hits = spheres.chain(triangles).enumerate().filter_map(|(index, t)| Some(Hit { index, t: t? }));
+    // The first of equal hits is kept: the lower index.
+    hits.reduce(|best, hit| if hit.t < best.t { hit } else { best })
+}
+
+/// Draws as the program does.
+fn batch(renderer: &Renderer, view: &View) -> Samples {
+    let rows = renderer.rows(view, 0..view.size().height, 255, &|_| ());
+    rows.samples.into_iter().map(|sample| u8::try_from(sample).expect("a sample is at most maxval")).collect()
+}
+
+fn as_png(samples: Samples, Size { width, height, .. }: Size) -> Vec<u8> {
+    let samples = samples.into_iter().map(u16::from).collect();
+    let pixmap =
+        Pixmap::new(width as usize, height as usize, 255, samples).expect("as many samples as pixels");
+    let mut bytes = Vec::new();
+    png::write(&pixmap, &mut bytes).expect("a vector takes every byte");
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ours_draws_every_scene_as_it_is_and_the_textbook_does_not() {
+        let effort = Effort { cases: 1, rounds: 1, timing: 1, spheres: 0, rows: 18 };
+        for Pictured { scene, group, methods, .. } in pictures(effort) {
+            let wrong = |name: &str| {
+                let found = methods.iter().find(|painted| painted.method == name);
+                found.map(|painted| painted.wrong_pixels).expect("a method's name")
+            };
+            for method in ["ours, plain loop", "ours, tree", "ours, batch"] {
+                assert_eq!(wrong(method), 0, "{scene}, {method}");
+            }
+            if group == Group::Hard {
+                assert!(wrong("textbook") > 0 && wrong("textbook f32") > 0, "{scene} is not hard");
+            }
+        }
+    }
+}
