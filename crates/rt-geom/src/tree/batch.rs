@@ -18,7 +18,7 @@ use crate::Ray;
 use crate::ray::PreparedRay;
 
 /// Rays on their way at once.
-const FLIGHT: usize = 32;
+const FLIGHT: usize = 64;
 
 /// The low bits of a pending key tell the child's lane.
 const LANE: u32 = 15;
@@ -57,7 +57,6 @@ impl<'a> Slot<'a> {
 }
 
 /// Which slots have what to do next.
-#[derive(Default)]
 struct Lists {
     slots: [[u8; FLIGHT]; 5],
     len: [usize; 5],
@@ -71,6 +70,8 @@ const DONE: usize = 3;
 const RESUME: usize = 4;
 
 impl Lists {
+    const NONE: Self = Self { slots: [[0; FLIGHT]; 5], len: [0; 5] };
+
     #[inline(always)]
     fn push(&mut self, list: usize, slot: usize) {
         self.slots[list][self.len[list]] = byte(slot);
@@ -107,7 +108,7 @@ pub(super) fn fly<S: Simd>(
     };
     let areas = Areas::of(tree);
     let mut waiting = rays.iter().enumerate();
-    let mut lists = Lists::default();
+    let mut lists = Lists::NONE;
     let fetch = tree.is_large();
     // A step writes sixteen entries, however many are met.
     let depth = tree.stack + WIDTH;
