@@ -4,7 +4,7 @@
 //!       [--distant d] [--ratios]
 //!
 //! `--ratios` prints instead how many times faster ours is than `rtcIntersect1` (`embree high`), as a
-//! Markdown table with geometric means; for batches also against `rtcIntersect1M`.
+//! Markdown table with geometric means; for batches also against `rtcIntersect1M` and packets.
 //! `--huge` adds 1e7 spheres; `--check` sets how many rays of a set the f64 referee answers;
 //! `--distant` adds camera rays from `d` units in front of the scene, where f32 runs out of digits.
 //! `--only` takes beginnings of names; `=name` asks for exactly that one. Times are the process's
@@ -273,10 +273,11 @@ fn main() {
     }
 }
 
-const RATIOS: [(&str, &str, &str); 5] = [
+const RATIOS: [(&str, &str, &str); 6] = [
     ("single", "ours single", "embree high"),
     ("batch", "ours batch", "embree high"),
     ("batch / 1M", "ours batch", "embree stream 1024"),
+    ("batch / packet16", "ours batch", "embree packet16 4x4"),
     ("single, AVX2", "ours single avx2", "embree high"),
     ("batch, AVX2", "ours batch avx2", "embree high"),
 ];
