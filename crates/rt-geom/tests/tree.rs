@@ -127,7 +127,7 @@ fn scenes() -> Vec<Scene> {
     }
     let huge = |_| ball(random.cube() * f64::MAX, random.unit() * f64::MAX);
     add("no finite sphere encloses", (0..60).map(huge).collect(), vec![], DVec3::ZERO, 1e308);
-    let tiny = |_| ball((random.cube() * 1e-310).round(), 1e-310 * random.unit());
+    let tiny = |_| ball(random.cube() * 1e-310, 1e-310 * random.unit());
     add("subnormal", (0..60).map(tiny).collect(), vec![], DVec3::ZERO, 1e-310);
     add("triangles", vec![], soup(random, 250, 0.3), DVec3::ZERO, 1.0);
     add("a closed mesh", vec![], globe(12), DVec3::ZERO, 1.0);
@@ -393,7 +393,12 @@ fn no_input_overflows_the_stack_or_takes_forever() {
         let expected = spheres.iter().map(|sphere| sphere.any(&ray, AHEAD)).filter(|hit| *hit).count() > 0;
         let tree = SphereTree::new(spheres, vec![]);
         assert_eq!(tree.any(&ray, AHEAD), expected);
-        assert_eq!(tree.closest(&ray, AHEAD).is_some(), expected);
+        let hit = tree.closest(&ray, AHEAD);
+        assert_eq!(hit.is_some(), expected);
+        // More rays than are in flight at once, each with a stack as deep as the tree needs.
+        let mut hits = [None; 200];
+        tree.closest_batch(&vec![ray; 200], AHEAD, &mut hits);
+        assert_eq!(hits, [hit; 200]);
     }
 }
 
