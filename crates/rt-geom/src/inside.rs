@@ -7,17 +7,22 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rt_math::exact::{DoubleDouble, Dyadic};
+use rt_math::exact::{Dyadic, round_if_certain};
 
 use crate::Triangle;
 use crate::ray::{larger, max_abs};
-use crate::triangle::exact::{Divisor, Pair, integer_cross, integer_difference, integer_dot};
+use crate::triangle::exact::{
+    Number, cross, difference, dot, integer_cross, integer_difference, integer_dot,
+};
 
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
 
 /// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 7).
 const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+
+/// Swallows what underflow does to a weight: `2^-1000`.
+const UNDERFLOW_WEIGHT: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Up to here in magnitude the differences of points may be for plain doubles and double-double: `2^200`.
 const FARTHEST: f64 = f64::from_bits((1023 + 200) << 52);
@@ -121,21 +126,6 @@ fn certain_signs(turns: [f64; 3], error: f64, edge: f64, far: f64) -> Option<[Or
     certain.then(|| turns.map(|turn| turn.total_cmp(&0.0)))
 }
 
-type Number = DoubleDouble<false>;
-type Numbers = [Number; 3];
-
-fn difference(p: DVec3, q: DVec3) -> Numbers {
-    [Number::difference(p.x, q.x), Number::difference(p.y, q.y), Number::difference(p.z, q.z)]
-}
-
-fn cross(v: &Numbers, w: &Numbers) -> Numbers {
-    [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]]
-}
-
-fn dot(v: &Numbers, w: &Numbers) -> Number {
-    v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
-}
-
 /// The turns and `n . n`, each within `640 u² edge³ far` and `640 u² edge⁴` (and underflow).
 fn double_double_turns(point: DVec3, triangle: &Triangle) -> ([Number; 3], Number) {
     let [a, b, c] = triangle.vertices();
@@ -159,9 +149,16 @@ fn double_double_weights(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> 
     }
     let (turns, square) = double_double_turns(point, triangle);
     let relative = 640.0 * U * U * (edge * edge * edge);
-    let pair = |x: Number| Pair { high: x.high(), low: x.low() };
-    let divisor = Divisor::new(pair(square), relative * edge + UNDERFLOW);
-    let weight = |turn: Number| divisor.divide::<false>(pair(turn), relative * far + UNDERFLOW);
+    let (turn_error, square_error) = (relative * far + UNDERFLOW, relative * edge + UNDERFLOW);
+    if 8.0 * square_error > square.high() {
+        return None;
+    }
+    let weight = |turn: Number| {
+        let quotient = turn / square;
+        let size = quotient.high().abs();
+        let error = 1.2 * (turn_error + size * square_error) / square.high();
+        round_if_certain(quotient.high(), quotient.low(), error + 32.0 * U * U * size + UNDERFLOW_WEIGHT)
+    };
     Some([weight(turns[0])?, weight(turns[1])?, weight(turns[2])?])
 }
 

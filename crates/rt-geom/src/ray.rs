@@ -1,5 +1,6 @@
 //! A ray: an origin and a direction of any length.
 
+use std::fmt;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -8,17 +9,27 @@ use glam::DVec3;
 ///
 /// The direction need not be a unit vector: `t` counts in units of it, and nothing normalises it behind the
 /// caller's back, because that would move the ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct Ray {
     origin: DVec3,
     direction: DVec3,
+    // What every shape's test needs of the direction, once for all of them.
+    reach: f64,
+    square: f64,
+    inverse_square: f64,
 }
 
 impl Ray {
     /// Returns the ray, or `None` if a component is not finite or the direction is zero.
+    #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Self> {
+        const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
         let valid = origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO;
-        valid.then_some(Self { origin, direction })
+        let reach = max_abs(direction);
+        let regular = (1.0 / LONGEST..=LONGEST).contains(&reach);
+        let square = if regular { direction.length_squared() } else { f64::NAN };
+        let reach = if regular { reach } else { f64::NAN };
+        valid.then_some(Self { origin, direction, reach, square, inverse_square: 1.0 / square })
     }
 
     /// Where the ray starts; finite.
@@ -42,42 +53,58 @@ impl Ray {
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
     }
+
+    /// The largest component of the direction in magnitude.
+    ///
+    /// The filters are proved for directions where this lies between 2^-100 and 2^100. For any other direction this and
+    /// the squares are NaN: every comparison with an error bound then fails, and the exact path decides.
+    #[inline(always)]
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// `direction . direction`, rounded.
+    #[inline(always)]
+    pub(crate) fn square(&self) -> f64 {
+        self.square
+    }
+
+    /// The reciprocal of `square`.
+    #[inline(always)]
+    pub(crate) fn inverse_square(&self) -> f64 {
+        self.inverse_square
+    }
 }
 
-/// A ray and a range, with what every shape's test needs computed once.
-///
-/// The filters are proved for directions whose largest component lies between 2^-100 and 2^100. For any other direction
-/// `reach` and `square` are NaN: every comparison with an error bound then fails, and the exact path decides.
+/// Rays are equal if their origins and directions are.
+impl PartialEq for Ray {
+    fn eq(&self, other: &Self) -> bool {
+        self.origin == other.origin && self.direction == other.direction
+    }
+}
+
+impl fmt::Debug for Ray {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Ray").field("origin", &self.origin).field("direction", &self.direction).finish()
+    }
+}
+
+/// A ray and the range of `t` that counts, as in `holds`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PreparedRay<'a> {
     pub(crate) ray: &'a Ray,
-    /// The range of `t` that counts, as in `holds`.
     pub(crate) start: f64,
     pub(crate) end: f64,
-    /// The largest component of the direction in magnitude.
-    pub(crate) reach: f64,
-    /// `direction . direction`, rounded; twice that; and its reciprocal.
+    /// As the ray has them.
     pub(crate) square: f64,
-    pub(crate) twice_square: f64,
     pub(crate) inverse_square: f64,
 }
 
 impl<'a> PreparedRay<'a> {
     #[inline(always)]
     pub(crate) fn new(ray: &'a Ray, within: Range<f64>) -> Self {
-        const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
-        let reach = max_abs(ray.direction);
-        let reach = if (1.0 / LONGEST..=LONGEST).contains(&reach) { reach } else { f64::NAN };
-        let square = if reach.is_nan() { reach } else { ray.direction.length_squared() };
-        Self {
-            ray,
-            start: within.start,
-            end: within.end,
-            reach,
-            square,
-            twice_square: 2.0 * square,
-            inverse_square: 1.0 / square,
-        }
+        let Range { start, end } = within;
+        Self { ray, start, end, square: ray.square, inverse_square: ray.inverse_square }
     }
 
     /// The range.
@@ -192,8 +219,8 @@ mod tests {
     fn a_very_long_or_short_direction_leaves_the_filters() {
         for (length, regular) in [(1.0, true), (1e30, true), (1e31, false), (1e-31, false), (5e-324, false)] {
             let ray = Ray::new(DVec3::ONE, DVec3::new(0.0, -length, 0.0)).unwrap();
-            let prepared = PreparedRay::new(&ray, 0.0..1.0);
-            assert_eq!(!prepared.reach.is_nan(), regular, "direction of length {length}");
+            assert_eq!(!ray.reach.is_nan(), regular, "direction of length {length}");
+            assert_eq!((ray, format!("{ray:?}").contains("NaN")), (ray, false));
         }
     }
 }

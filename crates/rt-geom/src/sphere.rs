@@ -10,9 +10,10 @@
 //!
 //! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every
 //! case here; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
-//! that cancel as well, from a Newton step on the residual `|w + t d|² - r²`, which is computed to twice the precision.
+//! that cancel as well, from a Newton step on the residual `|w + t d|² - r²` in `newton.rs`.
 
 mod exact;
+mod newton;
 
 use std::ops::Range;
 
@@ -20,16 +21,21 @@ use glam::DVec3;
 use rt_math::Roots;
 
 use crate::Ray;
-use crate::ray::{Candidate, PreparedRay, holds, max_abs};
+use crate::ray::{Candidate, PreparedRay, max_abs};
 
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Swallows all errors of underflow in a filter: `2^-500` (`docs/numerics.md`, section 5).
-const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+/// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there, and what
+/// underflows is far below the bounds.
+const SMALLEST: f64 = f64::from_bits((1023 - 250) << 52);
+const LARGEST: f64 = f64::from_bits((1023 + 600) << 52);
 
-/// Swallows what underflow does to a `t`: `2^-1000`.
-const UNDERFLOW_T: f64 = f64::from_bits((1023 - 1000) << 52);
+/// The error of `Delta` in the filter, relative to `d.d (w.w + r²)`, as `docs/numerics.md`, section 5, has it.
+const ERROR: f64 = 17.0 * U;
+
+/// Swallows what underflow does to a comparison of squares: `2^-1000`.
+const UNDERFLOW: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Where a point lies with regard to a sphere's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,43 +95,24 @@ impl Sphere {
     /// ```
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        let prepared = PreparedRay::new(ray, within);
-        let root = match self.line(&prepared) {
-            Line::Misses => return None,
-            Line::Crosses(crossing) => match crossing.first(&prepared) {
-                First::Near => exact::near_root(self, ray, prepared.square, prepared.reach, crossing.near()),
-                First::Far => exact::far_root(self, ray, prepared.square, prepared.reach, crossing.far()),
-                First::None => return None,
-                First::Unsure => None,
-            },
-            Line::Unsure => None,
-        };
-        match root {
-            Some(t) => holds(&prepared.within(), t).then_some(t),
-            None => exact::closest(self, ray, prepared.within()),
-        }
+        newton::closest(self, ray, within.start, within.end)
     }
 
     /// Returns the correctly rounded `t` of a closest hit that is known to exist, from its bounds: what `closest` gives.
     #[inline]
-    pub(crate) fn refine(&self, prepared: &PreparedRay, hit: Candidate) -> Option<f64> {
-        let middle = hit.low + 0.5 * (hit.high - hit.low);
-        // The root where the line enters is the smaller one: if it is in the range, it is the closest hit.
-        match exact::near_root(self, prepared.ray, prepared.square, prepared.reach, middle) {
-            Some(t) if prepared.start < t && t < prepared.end => Some(t),
-            _ => self.closest(prepared.ray, prepared.within()),
-        }
+    pub(crate) fn refine(&self, prepared: &PreparedRay, _: Candidate) -> Option<f64> {
+        self.closest(prepared.ray, prepared.within())
     }
 
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
         let prepared = PreparedRay::new(ray, within);
-        match self.line(&prepared) {
+        match self.line(ray) {
             Line::Misses => false,
-            Line::Crosses(crossing) => match crossing.first(&prepared) {
-                First::None => false,
-                First::Near | First::Far if prepared.end == f64::INFINITY => true,
+            Line::Crosses(crossing) => match crossing.first_ahead(prepared.start) {
+                Some(None) => false,
+                Some(Some(_)) if prepared.end == f64::INFINITY => true,
                 _ => self.offer(&crossing, &prepared, f64::INFINITY).is_some(),
             },
             Line::Unsure => exact::closest(self, ray, prepared.within()).is_some(),
@@ -137,19 +124,7 @@ impl Sphere {
     /// The number of roots is exact, a tangent line has one, and each root is correctly rounded: two that differ by
     /// less than the spacing of doubles come out equal. Never `Roots::All`.
     pub fn roots(&self, ray: &Ray) -> Roots {
-        let prepared = PreparedRay::new(ray, f64::NEG_INFINITY..f64::INFINITY);
-        match self.line(&prepared) {
-            Line::Misses => Roots::None,
-            Line::Crosses(crossing) => {
-                let near = exact::near_root(self, ray, prepared.square, prepared.reach, crossing.near());
-                let far = exact::far_root(self, ray, prepared.square, prepared.reach, crossing.far());
-                match (near, far) {
-                    (Some(near), Some(far)) => Roots::Two(near, far),
-                    _ => exact::roots(self, ray),
-                }
-            }
-            Line::Unsure => exact::roots(self, ray),
-        }
+        newton::roots(self, ray)
     }
 
     /// Returns on which side of the surface a point lies, exactly. A point that is not finite lies outside.
@@ -166,7 +141,7 @@ impl Sphere {
         let w = point - self.center;
         let (square, radius_square) = (w.length_squared(), self.radius * self.radius);
         let excess = square - radius_square;
-        let error = 7.0 * U * (square + radius_square) + UNDERFLOW_T;
+        let error = 7.0 * U * (square + radius_square) + UNDERFLOW;
         if excess > error {
             Side::Outside
         } else if excess < -error {
@@ -197,7 +172,7 @@ impl Sphere {
     /// beyond `limit`.
     #[inline(always)]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line(prepared) {
+        match self.line(prepared.ray) {
             Line::Misses => None,
             Line::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
@@ -207,9 +182,8 @@ impl Sphere {
     /// Returns the candidate of a line that crosses the surface.
     #[inline(always)]
     fn offer(&self, crossing: &Crossing, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let error = crossing.error();
-        let near = crossing.near();
-        let t = if near + error < prepared.start { crossing.far() } else { near };
+        let Approximation { near, far, error, .. } = crossing.approximation();
+        let t = if near + error < prepared.start { far } else { near };
         prepared.admit((t - error, t + error), limit, || {
             self.exact_candidate(prepared.ray, prepared.within(), limit)
         })
@@ -222,33 +196,25 @@ impl Sphere {
     }
 
     /// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.
-    ///
-    /// No test of the inputs' exponents is needed but the one that prepared the ray: where something overflows, the
-    /// error bound is infinite or NaN and nothing is certain.
     #[inline(always)]
-    fn line(&self, prepared: &PreparedRay) -> Line {
-        let d = prepared.ray.direction();
-        let w = prepared.ray.origin() - self.center;
+    fn line(&self, ray: &Ray) -> Line {
+        let d = ray.direction();
+        let w = ray.origin() - self.center;
         let x = w.cross(d);
         let (w_square, radius_square) = (w.length_squared(), self.radius * self.radius);
-        let delta = prepared.square * radius_square - x.length_squared();
+        let delta = ray.square() * radius_square - x.length_squared();
         let squares = w_square + radius_square;
-        // Infinite before anything in `delta` is.
-        let error = 8.5 * U * (prepared.twice_square * squares) + UNDERFLOW;
+        // NaN if the direction is out of the range where this is proved.
+        let error = (ERROR * ray.square()) * squares;
+        if !(squares > SMALLEST && squares < LARGEST) {
+            return Line::Unsure;
+        }
         if delta < -error {
             return Line::Misses;
         }
         if delta > error {
-            let products = w * d;
-            return Line::Crosses(Crossing {
-                b: (products.x + products.y) + products.z,
-                b_error: 4.2 * U * ((products.x.abs() + products.y.abs()) + products.z.abs()),
-                c: w_square - radius_square,
-                c_error: 14.0 * U * squares + UNDERFLOW,
-                root: delta.sqrt(),
-                delta_error: error,
-                inverse_a: prepared.inverse_square,
-            });
+            let (b, c) = (w.dot(d), w_square - radius_square);
+            return Line::Crosses(Crossing { b, c, squares, delta, error, inverse_a: ray.inverse_square() });
         }
         Line::Unsure
     }
@@ -261,70 +227,79 @@ enum Line {
     Unsure,
 }
 
-/// `a t² + 2 b t + c` with bounds of the errors, for a line that surely crosses the surface twice.
+/// `a t² + 2 b t + c`, for a line that surely crosses the surface twice.
 struct Crossing {
     b: f64,
-    b_error: f64,
     c: f64,
-    /// Twice the bound.
-    c_error: f64,
-    /// `sqrt(Delta)`
-    root: f64,
-    /// That of `Delta`, less than `Delta` itself.
-    delta_error: f64,
+    /// `w.w + r²`
+    squares: f64,
+    delta: f64,
+    /// A bound for the error of `delta`, less than `delta` itself.
+    error: f64,
     inverse_a: f64,
 }
 
-/// Which root is the first not before the start of the range.
-enum First {
+/// One of the two places where a line crosses a sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    /// Where it enters.
     Near,
+    /// Where it leaves.
     Far,
-    /// Both are before it.
-    None,
-    Unsure,
+}
+
+/// Both roots in doubles.
+struct Approximation {
+    near: f64,
+    far: f64,
+    /// A bound of the error of both, and of the rounding when it is added to them or subtracted.
+    error: f64,
+    /// `1 / sqrt(Delta)`
+    inverse_root: f64,
 }
 
 impl Crossing {
-    /// Approximately where the line enters.
     #[inline(always)]
-    fn near(&self) -> f64 {
-        (-self.b - self.root) * self.inverse_a
-    }
-
-    /// Approximately where it leaves.
-    #[inline(always)]
-    fn far(&self) -> f64 {
-        (-self.b + self.root) * self.inverse_a
-    }
-
-    /// A bound of the error of both, and of the roundings when it is added to them or subtracted.
-    #[inline(always)]
-    fn error(&self) -> f64 {
-        let size = (self.b.abs() + self.root) * self.inverse_a;
-        let error = self.b_error + self.delta_error / self.root;
-        1.05 * error * self.inverse_a + 10.0 * U * size + UNDERFLOW_T
-    }
-
-    #[inline(always)]
-    fn first(&self, prepared: &PreparedRay) -> First {
-        // From +0.0 on, the signs of the coefficients tell: of the roots' product c / a and, if it is positive, of their
-        // sum -2 b / a. `docs/numerics.md` shows that the sign of b is then certain.
-        if prepared.start.to_bits() == 0 && self.c.abs() > self.c_error {
-            return match (self.c < 0.0, self.b < 0.0) {
-                (true, _) => First::Far,
-                (false, true) => First::Near,
-                (false, false) => First::None,
-            };
+    fn approximation(&self) -> Approximation {
+        let root = self.delta.sqrt();
+        let inverse_root = 1.0 / root;
+        Approximation {
+            near: (-self.b - root) * self.inverse_a,
+            far: (root - self.b) * self.inverse_a,
+            error: 1.6 * self.error * inverse_root * self.inverse_a,
+            inverse_root,
         }
-        let error = self.error();
-        if self.near() - error > prepared.start {
-            First::Near
-        } else if self.near() + error < prepared.start && self.far() - error > prepared.start {
-            First::Far
-        } else if self.far() + error < prepared.start {
-            First::None
+    }
+
+    /// Which root, if any, is the first from +0.0 on; `None` if the range starts elsewhere or it is not certain.
+    ///
+    /// The signs of the coefficients tell: of the roots' product c / a and, if it is positive, of their sum -2 b / a.
+    /// `docs/numerics.md` shows that the sign of b is then certain.
+    #[inline(always)]
+    fn first_ahead(&self, start: f64) -> Option<Option<Place>> {
+        let certain = start.to_bits() == 0 && self.c.abs() > 14.0 * U * self.squares;
+        let first = match (self.c < 0.0, self.b < 0.0) {
+            (true, _) => Some(Place::Far),
+            (false, true) => Some(Place::Near),
+            (false, false) => None,
+        };
+        certain.then_some(first)
+    }
+
+    /// Which root, if any, is the first not before the start of a range; `None` if that is not certain.
+    #[inline(always)]
+    fn first(&self, start: f64, roots: &Approximation) -> Option<Option<Place>> {
+        let Approximation { near, far, error, .. } = *roots;
+        if let Some(first) = self.first_ahead(start) {
+            Some(first)
+        } else if near - error > start {
+            Some(Some(Place::Near))
+        } else if near + error < start && far - error > start {
+            Some(Some(Place::Far))
+        } else if far + error < start {
+            Some(None)
         } else {
-            First::Unsure
+            None
         }
     }
 }

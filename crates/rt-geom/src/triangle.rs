@@ -9,12 +9,15 @@
 //! tell on which side of each edge the line passes. It meets the closed triangle where no two of them have opposite
 //! signs and their sum, `d . (b - a) x (c - a)`, is not zero. Each sign depends on the two vertices of an edge and the
 //! ray alone, and swapping the vertices swaps it: with exact signs, two triangles that share an edge agree about it, and a
-//! closed mesh has no gap. Plain doubles with an error bound decide nearly every case here; `exact.rs` decides the
-//! rest.
+//! closed mesh has no gap.
+//!
+//! Möller and Trumbore's formulas give the same volumes (negative, and two of them as differences from the sum). In plain
+//! doubles with an error bound they decide nearly every case here, and `exact.rs` decides the rest. The last bits of `t`
+//! and of the weights come from one step of iterative refinement, in `refine.rs`.
 
 pub(crate) mod exact;
+mod refine;
 
-use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -25,14 +28,14 @@ use crate::ray::{Candidate, PreparedRay, larger, max_abs, smaller};
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 6).
-const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
-
-/// Swallows what underflow does to a `t`: `2^-1000`.
-const UNDERFLOW_T: f64 = f64::from_bits((1023 - 1000) << 52);
-
-/// Up to here in magnitude the vertices relative to the origin must be for plain doubles and double-double: `2^300`.
+/// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's origin
+/// is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
+const SHORTEST: f64 = f64::from_bits((1023 - 150) << 52);
 const FARTHEST: f64 = f64::from_bits((1023 + 300) << 52);
+
+/// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to `E² (E + S)`,
+/// as `docs/numerics.md`, section 6, has them.
+const ERROR: f64 = 18.0 * U;
 
 /// How a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,37 +102,27 @@ impl Triangle {
     /// ```
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        let prepared = PreparedRay::new(ray, within);
-        let Candidate { low, high } = self.candidate(&prepared, f64::INFINITY)?;
-        // Bounds that meet came from the exact stages.
-        if low == high {
-            return Some(low);
-        }
-        Some(self.refine(ray))
+        refine::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        let prepared = PreparedRay::new(ray, within);
         // For the whole ray the sign of `t` is enough, and needs no division.
-        if prepared.start.to_bits() == 0 && prepared.end == f64::INFINITY {
-            match self.line_beside(&prepared) {
-                Some(Ordering::Less) => return false,
-                Some(_) => {
-                    let (n, relative) = self.plane();
-                    let from = self.vertices[0] - ray.origin();
-                    let (height, slope) = (n.dot(from), n.dot(ray.direction()));
-                    let certain = |x: f64, v: f64| x.abs() > relative * v + UNDERFLOW;
-                    if certain(height, max_abs(from)) && certain(slope, prepared.reach) {
-                        return (height < 0.0) == (slope < 0.0);
+        if within.start.to_bits() == 0 && within.end == f64::INFINITY {
+            match self.line::<false>(ray) {
+                Line::Misses => return false,
+                Line::Hits(crossing) => {
+                    let (height, error) = crossing.height();
+                    if height.abs() > error {
+                        return height > 0.0;
                     }
                 }
-                None => {}
+                Line::Unsure => {}
             }
-            return exact::closest(self, ray, prepared.within()).is_some();
+            return exact::closest(self, ray, within).is_some();
         }
-        self.candidate(&prepared, f64::INFINITY).is_some()
+        self.candidate(&PreparedRay::new(ray, within), f64::INFINITY).is_some()
     }
 
     /// Returns how the ray, from its origin on, meets the triangle, exactly.
@@ -148,13 +141,12 @@ impl Triangle {
     /// assert_eq!(down(0.5, 0.5f64.next_up()), Verdict::Miss);
     /// ```
     pub fn verdict(&self, ray: &Ray) -> Verdict {
-        let prepared = PreparedRay::new(ray, 0.0..f64::INFINITY);
-        let line = match self.line(&prepared) {
+        let line = match self.line::<false>(ray) {
             Line::Hits(_) => Verdict::Interior,
-            Line::Misses if self.surely_leans(&prepared) => Verdict::Miss,
+            Line::Misses if self.surely_leans(ray) => Verdict::Miss,
             Line::Misses | Line::Unsure => exact::line_verdict(self, ray),
         };
-        if line.is_hit() && self.candidate(&prepared, f64::INFINITY).is_none() { Verdict::Miss } else { line }
+        if line.is_hit() && !self.any(ray, 0.0..f64::INFINITY) { Verdict::Miss } else { line }
     }
 
     /// Whether the ray crosses the triangle, by a rule that counts every crossing of a closed mesh once.
@@ -181,11 +173,14 @@ impl Triangle {
     /// assert_eq!(halves.iter().filter(|half| half.crosses(&ray)).count(), 1);
     /// ```
     pub fn crosses(&self, ray: &Ray) -> bool {
-        match self.line(&PreparedRay::new(ray, 0.0..f64::INFINITY)) {
+        match self.line::<false>(ray) {
             Line::Misses => false,
-            Line::Hits(hit) if hit.low > 0.0 => true,
-            Line::Hits(hit) if hit.high < 0.0 => false,
-            Line::Hits(_) | Line::Unsure => exact::crosses(self, ray),
+            Line::Hits(crossing) => match crossing.height() {
+                (height, error) if height > error => true,
+                (height, error) if height < -error => false,
+                _ => exact::crosses(self, ray),
+            },
+            Line::Unsure => exact::crosses(self, ray),
         }
     }
 
@@ -204,8 +199,7 @@ impl Triangle {
         let (e, f) = (b - a, c - a);
         let largest = larger(max_abs(e), max_abs(f));
         let area = max_abs(e.cross(f));
-        // False for what overflows.
-        let certain = largest < FARTHEST && area > 16.0 * U * largest * largest + UNDERFLOW;
+        let certain = largest > SHORTEST && largest < FARTHEST && area > 16.0 * U * largest * largest;
         !certain && exact::is_degenerate(self)
     }
 
@@ -215,40 +209,30 @@ impl Triangle {
     /// The weights lie in 0..=1, and their sum is 1 but for the rounding of each. A weight is zero exactly on the
     /// opposite edge, or where it underflows.
     pub fn hit_barycentric(&self, ray: &Ray) -> Option<[f64; 3]> {
-        match self.line_beside(&PreparedRay::new(ray, 0.0..f64::INFINITY)) {
-            Some(Ordering::Less) => None,
-            Some(_) => exact::rounded_weights(self, ray).or_else(|| exact::integer_weights(self, ray)),
-            None => exact::integer_weights(self, ray),
-        }
+        refine::weights(self, ray)
     }
 
     /// Returns `t` and the weights of the three vertices at the hit, if it is in the range: what [`Self::closest`] and
     /// [`Self::hit_barycentric`] give, in less time than both.
     pub fn closest_with_barycentric(&self, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
-        let Candidate { low, high } =
-            self.candidate(&PreparedRay::new(ray, within.clone()), f64::INFINITY)?;
-        if low < high
-            && let Some(hit) = exact::rounded_hit(self, ray)
-        {
-            return Some(hit);
-        }
-        Some((self.closest(ray, within)?, self.hit_barycentric(ray)?))
+        refine::closest_with_weights(self, ray, within.start, within.end)
     }
 
     /// Returns the correctly rounded `t` of a hit that is known to exist: what `closest` gives.
     #[inline]
     pub(crate) fn refine(&self, ray: &Ray) -> f64 {
-        exact::rounded_t(self, ray).unwrap_or_else(|| exact::integer_t(self, ray))
+        self.closest(ray, f64::NEG_INFINITY..f64::INFINITY).expect("a candidate is a hit")
     }
 
     /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
     /// `limit`.
     #[inline(always)]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line(prepared) {
+        match self.line::<false>(prepared.ray) {
             Line::Misses => None,
-            Line::Hits(Candidate { low, high }) => prepared
-                .admit((low, high), limit, || self.exact_candidate(prepared.ray, prepared.within(), limit)),
+            Line::Hits(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
+                self.exact_candidate(prepared.ray, prepared.within(), limit)
+            }),
             Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
     }
@@ -259,81 +243,130 @@ impl Triangle {
         Candidate::exact(exact::closest(self, ray, within), limit)
     }
 
-    /// The filter for the verdict: `Less` if the line surely passes beside the triangle, `Greater` if through its
-    /// interior, in plain doubles; `None` where that is not certain.
+    /// The filter: tells in plain doubles whether the line meets the interior or passes beside the triangle, where that
+    /// is certain.
+    ///
+    /// Source: T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997; the bounds are ours.
     #[inline(always)]
-    fn line_beside(&self, prepared: &PreparedRay) -> Option<Ordering> {
-        let d = prepared.ray.direction();
-        let [a, b, c] = self.vertices.map(|vertex| vertex - prepared.ray.origin());
-        let most = |x: f64, y: f64, z: f64| larger(x.abs(), larger(y.abs(), z.abs()));
-        let size = most(a.x, b.x, c.x) + most(a.y, b.y, c.y) + most(a.z, b.z, c.z);
-        // NaN out of the range for which the bound is proved: nothing is certain then.
-        let error =
-            if size < FARTHEST { 5.0 * U * prepared.reach * size * size + UNDERFLOW } else { f64::NAN };
-        let beside_a = d.cross(a);
-        let w = b.dot(beside_a);
-        let v = -c.dot(beside_a);
-        if v * w < 0.0 && smaller(v.abs(), w.abs()) > error {
-            return Some(Ordering::Less);
+    fn line<const FMA: bool>(&self, ray: &Ray) -> Line {
+        let [a, b, c] = self.vertices;
+        let (e, f, s) = (b - a, c - a, ray.origin() - a);
+        let most = |x: f64, y: f64| larger(x.abs(), y.abs());
+        let edge = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
+        let size = edge + (s.x.abs() + s.y.abs() + s.z.abs());
+        let spread = (ERROR * edge) * size;
+        // NaN if the direction is out of the range where this is proved.
+        let error = spread * ray.reach();
+        if !(edge > SHORTEST && size < FARTHEST) {
+            return Line::Unsure;
         }
-        let u = c.dot(d.cross(b));
-        let least = smaller(u, smaller(v, w));
-        let most = larger(u, larger(v, w));
-        if least > error || most < -error {
-            Some(Ordering::Greater)
-        } else if least < -error && most > error {
-            Some(Ordering::Less)
-        } else {
-            None
+        let p = cross::<FMA>(ray.direction(), f);
+        let sum = dot::<FMA>(e, p);
+        // False for NaN.
+        let leans = sum.abs() > error;
+        if !leans {
+            return if self.passes_beside(ray, error) { Line::Misses } else { Line::Unsure };
         }
+        // From here on as if the sum were positive.
+        let sign = 1f64.copysign(sum);
+        let (sum, v) = (sum.abs(), sign * dot::<FMA>(s, p));
+        let q = cross::<FMA>(s, e);
+        let w = sign * dot::<FMA>(ray.direction(), q);
+        let u = (sum - v) - w;
+        // All three at once: one branch to foretell.
+        let least = smaller(v, smaller(u, w));
+        if least < -error {
+            return Line::Misses;
+        }
+        if least > error {
+            let height = sign * dot::<FMA>(f, q);
+            return Line::Hits(Crossing { e, f, p, sign, sum, v, w, height, edge, size, spread });
+        }
+        Line::Unsure
     }
 
-    /// The filter: the verdict as `line_beside` has it, and for a hit the `t` with a bound of its error.
-    #[inline(always)]
-    fn line(&self, prepared: &PreparedRay) -> Line {
-        match self.line_beside(prepared) {
-            Some(Ordering::Less) => return Line::Misses,
-            Some(_) => {}
-            None => return Line::Unsure,
-        }
-        let (n, relative) = self.plane();
-        let a = self.vertices[0] - prepared.ray.origin();
-        let slope = n.dot(prepared.ray.direction());
-        let inverse = 1.0 / slope.abs();
-        let t = n.dot(a) / slope;
-        let error =
-            (relative * (max_abs(a) + t.abs() * prepared.reach) + UNDERFLOW * (1.0 + t.abs())) * inverse;
-        let error = 1.15 * error + 4.0 * U * t.abs() + UNDERFLOW_T;
-        if (relative * prepared.reach + UNDERFLOW) * inverse <= 0.125 {
-            Line::Hits(Candidate { low: t - error, high: t + error })
-        } else {
-            Line::Unsure
-        }
+    /// Whether a line that may be parallel to the plane surely passes beside the triangle: two volumes have opposite
+    /// signs.
+    #[cold]
+    #[inline(never)]
+    fn passes_beside(&self, ray: &Ray, error: f64) -> bool {
+        let [a, b, c] = self.vertices;
+        let (e, f, s) = (b - a, c - a, ray.origin() - a);
+        let p = ray.direction().cross(f);
+        let (sum, v, w) = (e.dot(p), s.dot(p), ray.direction().dot(s.cross(e)));
+        let u = (sum - v) - w;
+        smaller(u, smaller(v, w)) < -error && larger(u, larger(v, w)) > error
     }
 
     /// Whether the ray is surely not parallel to the triangle, which surely has a plane.
-    fn surely_leans(&self, prepared: &PreparedRay) -> bool {
-        let (n, relative) = self.plane();
-        let slope = n.dot(prepared.ray.direction()).abs();
-        slope.is_finite() && slope > relative * prepared.reach + UNDERFLOW
-    }
-
-    /// `n = (b - a) x (c - a)` and what to multiply with the largest component of a vector `v` for a bound of the error
-    /// of `n . v`.
-    #[inline(always)]
-    fn plane(&self) -> (DVec3, f64) {
+    fn surely_leans(&self, ray: &Ray) -> bool {
         let [a, b, c] = self.vertices;
         let (e, f) = (b - a, c - a);
         let most = |x: f64, y: f64| larger(x.abs(), y.abs());
-        let size = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
-        (e.cross(f), 6.0 * U * size * size)
+        let edge = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
+        let error = (ERROR * edge) * edge * ray.reach();
+        edge > SHORTEST && edge < FARTHEST && ray.direction().cross(f).dot(e).abs() > error
     }
 }
 
 /// What the filter says about a line and a triangle.
 enum Line {
     Misses,
-    /// Through the interior; the bounds hold for the exact and the correctly rounded `t`, whatever the range.
-    Hits(Candidate),
+    /// Through the interior, whatever the range.
+    Hits(Crossing),
     Unsure,
+}
+
+/// Möller and Trumbore's quantities for a line that surely meets the interior, all but `e`, `f`, `p` with the sign that makes the
+/// sum of the volumes positive.
+struct Crossing {
+    /// The edges from the first vertex to the others.
+    e: DVec3,
+    f: DVec3,
+    /// `d x f`
+    p: DVec3,
+    /// What the others have been multiplied with: 1 or -1.
+    sign: f64,
+    /// The sum of the three volumes, and two of them: the weights of the vertices times the sum.
+    sum: f64,
+    v: f64,
+    w: f64,
+    /// `t` times the sum.
+    height: f64,
+    /// `E`: the sum over the axes of the largest component of the edges.
+    edge: f64,
+    /// `E + S`, with `S` the same for the origin relative to the first vertex.
+    size: f64,
+    /// What the errors of volumes and height are proportional to.
+    spread: f64,
+}
+
+impl Crossing {
+    /// The height, which has the sign of `t`, and a bound of its error.
+    #[inline(always)]
+    fn height(&self) -> (f64, f64) {
+        (self.height, self.spread * self.edge)
+    }
+
+    /// Bounds of the exact and of the correctly rounded `t`.
+    #[inline(always)]
+    fn bounds(&self, ray: &Ray) -> (f64, f64) {
+        let inverse = 1.0 / self.sum;
+        let t = self.height * inverse;
+        let error = self.spread * (self.edge + t.abs() * ray.reach()) * inverse;
+        (t - error, t + error)
+    }
+}
+
+/// `v x w` in plain doubles, fused where that is asked for.
+#[inline(always)]
+fn cross<const FMA: bool>(v: DVec3, w: DVec3) -> DVec3 {
+    let part = |a: f64, b: f64, c: f64, d: f64| if FMA { a.mul_add(b, -(c * d)) } else { a * b - c * d };
+    DVec3::new(part(v.y, w.z, v.z, w.y), part(v.z, w.x, v.x, w.z), part(v.x, w.y, v.y, w.x))
+}
+
+/// `v . w` in plain doubles, fused where that is asked for.
+#[inline(always)]
+fn dot<const FMA: bool>(v: DVec3, w: DVec3) -> f64 {
+    if FMA { v.x.mul_add(w.x, v.y.mul_add(w.y, v.z * w.z)) } else { (v.x * w.x + v.y * w.y) + v.z * w.z }
 }

@@ -1,115 +1,24 @@
-//! The stages after the filter: compensated Newton step, double-double, integers.
+//! The stages after the filter and the Newton step: double-double, integers.
 
 use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
 use rt_math::Roots;
-use rt_math::exact::{DoubleDouble, Dyadic, round_if_certain, two_diff, two_prod, two_sum};
-use rt_math::fma_dispatch;
+use rt_math::exact::{DoubleDouble, Dyadic, round_if_certain};
 
-use super::{Side, Sphere, U, UNDERFLOW, UNDERFLOW_T};
+use super::{Side, Sphere, U};
 use crate::Ray;
-use crate::ray::{holds, larger, max_abs};
+use crate::ray::{holds, max_abs};
 
-/// Up to here in magnitude the coordinates relative to the center must be for the stages in double-double: `2^300`.
+/// Up to here in magnitude the coordinates relative to the center must be for double-double: `2^300`.
 const FARTHEST: f64 = f64::from_bits((1023 + 300) << 52);
 
-fma_dispatch! {
-    /// Returns the correctly rounded root where the line enters, from an approximation, or `None` if it takes more.
-    pub(super) fn near_root(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> = near_kernel;
-}
+/// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 5).
+const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
 
-fma_dispatch! {
-    /// Returns the correctly rounded root where the line leaves, from an approximation, or `None` if it takes more.
-    pub(super) fn far_root(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> = far_kernel;
-}
-
-#[inline(always)]
-fn near_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> {
-    newton::<FMA>(sphere, ray, a, reach, t, -1.0)
-}
-
-#[inline(always)]
-fn far_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, a: f64, reach: f64, t: f64) -> Option<f64> {
-    newton::<FMA>(sphere, ray, a, reach, t, 1.0)
-}
-
-/// The longest Newton step, relative to `t`, that may be the last: `2^-40` for the first step, `2^-52` for a second one, whose
-/// bound is so much tighter.
-const LAST_STEP: [f64; 2] = [f64::from_bits((1023 - 40) << 52), f64::EPSILON];
-
-/// The errors of the residual, and of half its slope, relative to the square of the largest term and to that term
-/// times the direction.
-const F_ERROR: f64 = 1024.0 * U * U;
-const G_ERROR: f64 = 64.0 * U;
-
-/// Newton steps from `t` on `f(t) = |w + t d|² - r²`, with `f` good to about 100 bits, and the rounding test.
-///
-/// Nothing is assumed about how good `t` is: a step is the last one if its length, the curvature `a` of `f` and the
-/// slope prove that a root lies where it leads. `slope` is the sign of `f'` there: -1 where the line enters, +1 where it
-/// leaves, so that the root is the one asked for. Section 5 of `docs/numerics.md` proves the bounds. They do not wait
-/// for the residual, which takes longest to compute.
-#[inline(always)]
-fn newton<const FMA: bool>(
-    sphere: &Sphere,
-    ray: &Ray,
-    a: f64,
-    reach: f64,
-    mut t: f64,
-    slope: f64,
-) -> Option<f64> {
-    let (o, c, d, r) = (ray.origin(), sphere.center, ray.direction(), sphere.radius);
-    // One step is enough but for a sphere far beyond its radius, or a root that cancels.
-    for last_step in LAST_STEP {
-        // p = w + t d as high + low per component; no term of these sums is larger than `largest`.
-        let component = |o: f64, c: f64, d: f64| {
-            let (w, w_low) = two_diff(o, c);
-            let (step, step_low) = two_prod::<FMA>(t, d);
-            let (high, error) = two_sum(w, step);
-            (high, error + (w_low + step_low), larger(w.abs(), step.abs()))
-        };
-        let (x, x_low, x_term) = component(o.x, c.x, d.x);
-        let (y, y_low, y_term) = component(o.y, c.y, d.y);
-        let (z, z_low, z_term) = component(o.z, c.z, d.z);
-        let largest = larger(larger(x_term, y_term), larger(z_term, r));
-
-        // Half the slope, and the bounds.
-        let g = slope * (x * d.x + y * d.y + z * d.z);
-        let inverse_g = 1.0 / g;
-        let f_error = F_ERROR * (largest * largest) + UNDERFLOW;
-        let g_error = G_ERROR * (reach * largest) + UNDERFLOW;
-        let last = last_step * t.abs();
-        let slack = (0.6 * f_error + 1.2 * last * g_error) * inverse_g;
-        let longest = last + slack;
-        let curvature = 2.4 * a * longest * inverse_g;
-        let error = slack + (0.4 * curvature + 8.0 * U) * longest + UNDERFLOW_T;
-
-        // |p|² - r²: squares, then (x² + y²) + (z² - r²), each step with its error.
-        let (xx, xx_low) = two_prod::<FMA>(x, x);
-        let (yy, yy_low) = two_prod::<FMA>(y, y);
-        let (zz, zz_low) = two_prod::<FMA>(z, z);
-        let (rr, rr_low) = two_prod::<FMA>(r, r);
-        let (sum, e1) = two_sum(xx, yy);
-        let (rest, e2) = two_sum(zz, -rr);
-        let (sum, e3) = two_sum(sum, rest);
-        let crossed = x_low * (2.0 * x + x_low) + y_low * (2.0 * y + y_low) + z_low * (2.0 * z + z_low);
-        let low = ((xx_low + yy_low) + (zz_low - rr_low)) + ((e1 + e2) + (e3 + crossed));
-        let step = (sum + low) * (-0.5 * slope * inverse_g);
-
-        // False for NaN.
-        if !(8.0 * g_error <= g && curvature <= 0.125 && largest <= FARTHEST) {
-            return None;
-        }
-        if step.abs() <= last
-            && let Some(rounded) = round_if_certain(t, step, error)
-        {
-            return Some(rounded);
-        }
-        t += step;
-    }
-    None
-}
+/// Swallows what underflow does to a `t`: `2^-1000`.
+const UNDERFLOW_T: f64 = f64::from_bits((1023 - 1000) << 52);
 
 /// Returns the closest root in the range, whatever it takes.
 #[cold]
@@ -252,9 +161,9 @@ fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3
 
 #[cfg(test)]
 mod tests {
-    use super::super::{First, Line};
+    use super::super::Line;
+    use super::super::newton::rounded;
     use super::*;
-    use crate::ray::PreparedRay;
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).
     fn random(state: &mut u64) -> f64 {
@@ -279,21 +188,22 @@ mod tests {
 
     impl Stages {
         fn count(&mut self, sphere: &Sphere, ray: &Ray) {
-            let prepared = PreparedRay::new(ray, 0.0..f64::INFINITY);
-            let newton = match sphere.line(&prepared) {
+            let newton = match sphere.line(ray) {
                 Line::Misses => {
                     self.filter += 1;
                     return;
                 }
-                Line::Crosses(crossing) => match crossing.first(&prepared) {
-                    First::None => {
-                        self.filter += 1;
-                        return;
+                Line::Crosses(crossing) => {
+                    let roots = crossing.approximation();
+                    match crossing.first(0.0, &roots) {
+                        Some(None) => {
+                            self.filter += 1;
+                            return;
+                        }
+                        Some(Some(place)) => rounded::<false>(sphere, ray, &crossing, &roots, place),
+                        None => None,
                     }
-                    First::Near => near_root(sphere, ray, prepared.square, prepared.reach, crossing.near()),
-                    First::Far => far_root(sphere, ray, prepared.square, prepared.reach, crossing.far()),
-                    First::Unsure => None,
-                },
+                }
                 Line::Unsure => None,
             };
             // The stages agree, where an earlier one dares to decide.
@@ -344,24 +254,6 @@ mod tests {
         }
         let all = [stages.filter, stages.newton, stages.double_double, stages.integers];
         assert!(all.iter().all(|&n| n > 60), "{stages:?}");
-    }
-
-    #[test]
-    fn fused_and_plain_arithmetic_give_the_same_root() {
-        let state = &mut 3;
-        let mut decided = 0;
-        for i in 0..4096 {
-            let (origin, center) = (10.0 * vector(state), vector(state));
-            let sphere = Sphere::new(center, 2f64.powi(-(i % 20))).unwrap();
-            let ray = Ray::new(origin, center + 0.5 * sphere.radius * vector(state) - origin).unwrap();
-            let prepared = PreparedRay::new(&ray, 0.0..f64::INFINITY);
-            let Line::Crosses(crossing) = sphere.line(&prepared) else { continue };
-            let (a, reach, t) = (prepared.square, prepared.reach, crossing.near());
-            let plain = near_kernel::<false>(&sphere, &ray, a, reach, t);
-            assert_eq!(plain, near_kernel::<true>(&sphere, &ray, a, reach, t), "{sphere:?} {ray:?}");
-            decided += usize::from(plain.is_some());
-        }
-        assert!(decided > 2000, "{decided}");
     }
 
     #[test]

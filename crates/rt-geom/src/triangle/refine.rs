@@ -1,0 +1,327 @@
+//! The correctly rounded `t` and weights of a hit that the filter has found: one step of iterative refinement.
+//!
+//! A hit solves the linear system `o + t d = α a + β b + γ c`, `α + β + γ = 1`. The filter's solution in doubles is put back
+//! in; what is left over, computed to twice the precision, is a vector `r` some units in the last place long. It is
+//! solved for by the same formulas, in plain doubles, since of a correction a few bits are enough:
+//!
+//! ```text
+//!     β' = r . (d x f) / sum      γ' = d . (r x e) / sum      t' = f . (r x e) / sum
+//! ```
+//!
+//! A rounding test then tells whether solution and correction decide the last bit. `docs/numerics.md`, section 6, proves
+//! the bounds.
+
+use glam::DVec3;
+use rt_math::exact::{round_if_certain, two_prod, two_sum};
+use rt_math::fma_dispatch;
+
+use super::{Crossing, Line, Triangle, U, cross, dot, exact};
+use crate::Ray;
+use crate::ray::{holds, max_abs};
+
+/// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to `r`.
+const REST_ERROR: f64 = 512.0 * U * U;
+const SOLUTION_ERROR: f64 = 24.0 * U;
+
+fma_dispatch! {
+    /// Returns the correctly rounded `t` of the hit, if it is between the ends of the range.
+    pub(super) fn closest(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
+}
+
+#[inline(always)]
+fn closest_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> {
+    let within = start..end;
+    let t = match triangle.line::<FMA>(ray) {
+        Line::Misses => return None,
+        Line::Hits(crossing) if crossing.is_before(start) => return None,
+        Line::Hits(crossing) => {
+            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            refined.t::<FMA>().or_else(|| refined.again::<FMA>().0)
+        }
+        Line::Unsure => None,
+    };
+    match t {
+        Some(t) => holds(&within, t).then_some(t),
+        None => exact::closest(triangle, ray, within),
+    }
+}
+
+fma_dispatch! {
+    /// Returns the correctly rounded weights where the whole line meets the triangle.
+    pub(super) fn weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> = weights_kernel;
+}
+
+#[inline(always)]
+fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+    let weights = match triangle.line::<FMA>(ray) {
+        Line::Misses => return None,
+        Line::Hits(crossing) => {
+            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            refined.weights::<FMA>().or_else(|| refined.again::<FMA>().1)
+        }
+        Line::Unsure => None,
+    };
+    weights.or_else(|| exact::integer_weights(triangle, ray))
+}
+
+fma_dispatch! {
+    /// Returns both, if `t` is between the ends of the range.
+    pub(super) fn closest_with_weights(
+        triangle: &Triangle,
+        ray: &Ray,
+        start: f64,
+        end: f64,
+    ) -> Option<(f64, [f64; 3])> = both_kernel;
+}
+
+#[inline(always)]
+fn both_kernel<const FMA: bool>(
+    triangle: &Triangle,
+    ray: &Ray,
+    start: f64,
+    end: f64,
+) -> Option<(f64, [f64; 3])> {
+    let within = start..end;
+    let (t, weights) = match triangle.line::<FMA>(ray) {
+        Line::Misses => return None,
+        Line::Hits(crossing) if crossing.is_before(start) => return None,
+        Line::Hits(crossing) => {
+            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            match (refined.t::<FMA>(), refined.weights::<FMA>()) {
+                (Some(t), Some(weights)) => (Some(t), Some(weights)),
+                _ => refined.again::<FMA>(),
+            }
+        }
+        Line::Unsure => (None, None),
+    };
+    let t = match t {
+        Some(t) => holds(&within, t).then_some(t)?,
+        None => exact::closest(triangle, ray, within)?,
+    };
+    Some((t, weights.or_else(|| exact::integer_weights(triangle, ray))?))
+}
+
+/// The solution in doubles and what is left over.
+pub(super) struct Refined<'a> {
+    crossing: &'a Crossing,
+    triangle: &'a Triangle,
+    ray: &'a Ray,
+    /// One over the sum of the volumes, with the sum's own sign.
+    inverse: f64,
+    t: f64,
+    /// `α`, `β`, `γ`, and `1 - α - β - γ`.
+    weights: [f64; 3],
+    missing: f64,
+    /// `r` and `r x e`
+    rest: DVec3,
+    q: DVec3,
+    /// A bound for the error of `r` and of solving for it: a length.
+    error: f64,
+}
+
+impl<'a> Refined<'a> {
+    #[inline(always)]
+    pub(super) fn new<const FMA: bool>(
+        crossing: &'a Crossing,
+        triangle: &'a Triangle,
+        ray: &'a Ray,
+        [t, beta, gamma]: [f64; 3],
+    ) -> Self {
+        let Crossing { e, sign, sum, edge, size, .. } = *crossing;
+        let [a, b, c] = triangle.vertices;
+        let (rest, beta_error) = two_sum(1.0, -beta);
+        let (alpha, gamma_error) = two_sum(rest, -gamma);
+        let missing = beta_error + gamma_error;
+
+        // r = o + t d - α a - β b - γ c - missing a, the large terms without error.
+        let (o, d) = (ray.origin(), ray.direction());
+        let component = |o: f64, d: f64, a: f64, b: f64, c: f64| {
+            let (td, td_low) = two_prod::<FMA>(t, d);
+            let (aa, aa_low) = two_prod::<FMA>(alpha, a);
+            let (bb, bb_low) = two_prod::<FMA>(beta, b);
+            let (cc, cc_low) = two_prod::<FMA>(gamma, c);
+            let (point, e1) = two_sum(o, td);
+            let (two, e2) = two_sum(bb, cc);
+            let (three, e3) = two_sum(two, aa);
+            let low = (td_low - aa_low) - (bb_low + cc_low);
+            (point - three) + (((e1 - e2) - e3) + (low - missing * a))
+        };
+        let rest = DVec3::new(
+            component(o.x, d.x, a.x, b.x, c.x),
+            component(o.y, d.y, a.y, b.y, c.y),
+            component(o.z, d.z, a.z, b.z, c.z),
+        );
+        // How much larger than their product the terms of the sum of the volumes may be.
+        let positive = 1.0 / sum;
+        let steepness = (ray.reach() * edge) * edge * positive;
+        let length = rest.x.abs() + rest.y.abs() + rest.z.abs();
+        let error = REST_ERROR * (max_abs(a) + size) + SOLUTION_ERROR * (steepness * length);
+        let inverse = positive * sign;
+        Self {
+            crossing,
+            triangle,
+            ray,
+            inverse,
+            t,
+            weights: [alpha, beta, gamma],
+            missing,
+            rest,
+            q: cross::<FMA>(rest, e),
+            error,
+        }
+    }
+
+    /// The corrections of `t`, `β` and `γ`.
+    #[inline(always)]
+    fn steps<const FMA: bool>(&self) -> [f64; 3] {
+        let Crossing { f, p, .. } = *self.crossing;
+        let d = self.ray.direction();
+        [dot::<FMA>(f, self.q), dot::<FMA>(self.rest, p), dot::<FMA>(d, self.q)].map(|x| x * self.inverse)
+    }
+
+    /// The correctly rounded `t`, if that is certain.
+    #[inline(always)]
+    pub(super) fn t<const FMA: bool>(&self) -> Option<f64> {
+        let edge = self.crossing.edge;
+        round_if_certain(self.t, self.steps::<FMA>()[0], (edge * edge) * self.inverse.abs() * self.error)
+    }
+
+    /// The correctly rounded weights, if all are certain.
+    #[inline(always)]
+    pub(super) fn weights<const FMA: bool>(&self) -> Option<[f64; 3]> {
+        let [_, beta, gamma] = self.steps::<FMA>();
+        let alpha = self.missing - (beta + gamma);
+        let error = 2.0 * (self.crossing.edge * self.ray.reach()) * self.inverse.abs() * self.error;
+        Some([
+            round_if_certain(self.weights[0], alpha, 2.5 * error)?,
+            round_if_certain(self.weights[1], beta, error)?,
+            round_if_certain(self.weights[2], gamma, error)?,
+        ])
+    }
+
+    /// `t` and the weights, what is certain of them, after one more step.
+    #[inline(always)]
+    pub(super) fn again<const FMA: bool>(&self) -> (Option<f64>, Option<[f64; 3]>) {
+        let [t, beta, gamma] = self.steps::<FMA>();
+        let corrected = [self.t + t, self.weights[1] + beta, self.weights[2] + gamma];
+        refined_again(self.triangle, self.ray, corrected)
+    }
+}
+
+/// One more step, from a corrected solution: for a ray that is nearly parallel to the plane.
+#[cold]
+#[inline(never)]
+fn refined_again(triangle: &Triangle, ray: &Ray, corrected: [f64; 3]) -> (Option<f64>, Option<[f64; 3]>) {
+    let Line::Hits(crossing) = triangle.line::<false>(ray) else { return (None, None) };
+    let refined = Refined::new::<false>(&crossing, triangle, ray, corrected);
+    // False for NaN.
+    if refined.weights.iter().all(|&weight| weight >= -0.25) {
+        (refined.t::<false>(), refined.weights::<false>())
+    } else {
+        (None, None)
+    }
+}
+
+impl Crossing {
+    /// `t`, `β` and `γ` in doubles.
+    #[inline(always)]
+    pub(super) fn solution(&self) -> [f64; 3] {
+        let inverse = 1.0 / self.sum;
+        [self.height * inverse, self.v * inverse, self.w * inverse]
+    }
+
+    /// Whether the hit surely comes before a range that starts at the origin or later.
+    #[inline(always)]
+    fn is_before(&self, start: f64) -> bool {
+        let (height, error) = self.height();
+        height < -error && start >= 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::PreparedRay;
+
+    /// Numbers in -1..1 from a fixed seed (splitmix64).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(state: &mut u64) -> DVec3 {
+        DVec3::new(random(state), random(state), random(state))
+    }
+
+    #[test]
+    fn fused_and_plain_arithmetic_give_the_same_values() {
+        let state = &mut 3;
+        let mut hits = 0;
+        for _ in 0..4000 {
+            let [a, b, c] = [vector(state), vector(state), vector(state)];
+            let target = a + random(state).abs() * (b - a) + random(state).abs() * (c - a);
+            let origin = 5.0 * vector(state);
+            let (triangle, ray) =
+                (Triangle::new(a, b, c).unwrap(), Ray::new(origin, target - origin).unwrap());
+            let end = f64::INFINITY;
+            let t = closest_kernel::<false>(&triangle, &ray, 0.0, end);
+            assert_eq!(t, closest_kernel::<true>(&triangle, &ray, 0.0, end));
+            let weights = weights_kernel::<false>(&triangle, &ray);
+            assert_eq!(weights, weights_kernel::<true>(&triangle, &ray));
+            let both = both_kernel::<false>(&triangle, &ray, 0.0, end);
+            assert_eq!(both, both_kernel::<true>(&triangle, &ray, 0.0, end));
+            assert_eq!(both, t.zip(weights));
+            hits += usize::from(t.is_some());
+        }
+        assert!(hits > 1000, "{hits}");
+    }
+
+    #[test]
+    fn the_bounds_of_a_candidate_hold_its_t() {
+        let state = &mut 4;
+        let mut hits = 0;
+        for i in 0..4000 {
+            let size = 2f64.powi(-(i % 20));
+            let a = vector(state);
+            let (b, c) = (a + size * vector(state), a + size * vector(state));
+            let target = a + 0.5 * random(state).abs() * (b - a) + 0.5 * random(state).abs() * (c - a);
+            let origin = 5.0 * vector(state);
+            let ray = Ray::new(origin, target - origin).unwrap();
+            let triangle = Triangle::new(a, b, c).unwrap();
+            let whole = PreparedRay::new(&ray, f64::NEG_INFINITY..f64::INFINITY);
+            let Some(bounds) = triangle.candidate(&whole, f64::INFINITY) else { continue };
+            let t = exact::integer_t(&triangle, &ray);
+            assert!(bounds.low <= t && t <= bounds.high, "{triangle:?} {ray:?} {bounds:?}");
+            hits += usize::from(bounds.low < bounds.high);
+        }
+        assert!(hits > 1000, "{hits}");
+    }
+
+    /// The ray is within 2^-12 to 2^-24 of parallel to the plane: one step is not enough, two are.
+    #[test]
+    fn a_second_step_decides_nearly_parallel_rays() {
+        let state = &mut 5;
+        let (mut first, mut second, mut hits) = (0, 0, 0);
+        for i in 0..2000 {
+            let [a, b, c] = [vector(state), vector(state), vector(state)];
+            let triangle = Triangle::new(a, b, c).unwrap();
+            let along = random(state) * (b - a) + random(state) * (c - a);
+            let target = a + 0.4 * random(state).abs() * (b - a) + 0.4 * random(state).abs() * (c - a);
+            let lean = 2f64.powi(-12 - i % 12) * vector(state);
+            let ray = Ray::new(target - along - lean, along + lean).unwrap();
+            let Line::Hits(crossing) = triangle.line::<false>(&ray) else { continue };
+            hits += 1;
+            let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
+            if refined.t::<false>().is_some() {
+                first += 1;
+            } else if let (Some(t), Some(weights)) = refined.again::<false>() {
+                second += 1;
+                assert_eq!(t, exact::integer_t(&triangle, &ray), "{triangle:?} {ray:?}");
+                assert_eq!(Some(weights), exact::integer_weights(&triangle, &ray), "{triangle:?} {ray:?}");
+            }
+        }
+        assert!(hits > 1500 && first < hits / 2 && second > hits / 3, "{hits} {first} {second}");
+    }
+}
