@@ -186,6 +186,19 @@ pub(crate) fn max_abs(v: DVec3) -> f64 {
     larger(v.x.abs(), larger(v.y.abs(), v.z.abs()))
 }
 
+/// `v x w` in plain doubles, fused where that is asked for.
+#[inline(always)]
+pub(crate) fn cross<const FMA: bool>(v: DVec3, w: DVec3) -> DVec3 {
+    let part = |a: f64, b: f64, c: f64, d: f64| if FMA { a.mul_add(b, -(c * d)) } else { a * b - c * d };
+    DVec3::new(part(v.y, w.z, v.z, w.y), part(v.z, w.x, v.x, w.z), part(v.x, w.y, v.y, w.x))
+}
+
+/// `v . w` in plain doubles, fused where that is asked for.
+#[inline(always)]
+pub(crate) fn dot<const FMA: bool>(v: DVec3, w: DVec3) -> f64 {
+    if FMA { v.x.mul_add(w.x, v.y.mul_add(w.y, v.z * w.z)) } else { (v.x * w.x + v.y * w.y) + v.z * w.z }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -21,7 +21,7 @@ use glam::DVec3;
 use rt_math::Roots;
 
 use crate::Ray;
-use crate::ray::{Candidate, PreparedRay, max_abs};
+use crate::ray::{Candidate, PreparedRay, cross, dot, max_abs};
 
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
@@ -108,7 +108,7 @@ impl Sphere {
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
         let prepared = PreparedRay::new(ray, within);
-        match self.line(ray) {
+        match self.line::<false>(ray) {
             Line::Misses => false,
             Line::Crosses(crossing) => match crossing.first_ahead(prepared.start) {
                 Some(None) => false,
@@ -172,7 +172,7 @@ impl Sphere {
     /// beyond `limit`.
     #[inline(always)]
     pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line(prepared.ray) {
+        match self.line::<false>(prepared.ray) {
             Line::Misses => None,
             Line::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
@@ -197,12 +197,12 @@ impl Sphere {
 
     /// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.
     #[inline(always)]
-    fn line(&self, ray: &Ray) -> Line {
+    fn line<const FMA: bool>(&self, ray: &Ray) -> Line {
         let d = ray.direction();
         let w = ray.origin() - self.center;
-        let x = w.cross(d);
-        let (w_square, radius_square) = (w.length_squared(), self.radius * self.radius);
-        let delta = ray.square() * radius_square - x.length_squared();
+        let x = cross::<FMA>(w, d);
+        let (w_square, radius_square) = (dot::<FMA>(w, w), self.radius * self.radius);
+        let delta = ray.square() * radius_square - dot::<FMA>(x, x);
         let squares = w_square + radius_square;
         // NaN if the direction is out of the range where this is proved.
         let error = (ERROR * ray.square()) * squares;
@@ -213,7 +213,7 @@ impl Sphere {
             return Line::Misses;
         }
         if delta > error {
-            let (b, c) = (w.dot(d), w_square - radius_square);
+            let (b, c) = (dot::<FMA>(w, d), w_square - radius_square);
             return Line::Crosses(Crossing { b, c, squares, delta, error, inverse_a: ray.inverse_square() });
         }
         Line::Unsure

@@ -23,7 +23,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::Ray;
-use crate::ray::{Candidate, PreparedRay, larger, max_abs, smaller};
+use crate::ray::{Candidate, PreparedRay, cross, dot, larger, max_abs, smaller};
 
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
@@ -65,6 +65,9 @@ impl Verdict {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     vertices: [DVec3; 3],
+    /// `E`: the sum over the axes of the larger component of the edges from the first vertex. Infinite, so that no filter is
+    /// certain, if that is too small for the filters' bounds.
+    edge: f64,
 }
 
 impl Triangle {
@@ -72,7 +75,11 @@ impl Triangle {
     /// nothing hits it.
     pub fn new(a: DVec3, b: DVec3, c: DVec3) -> Option<Self> {
         let valid = a.is_finite() && b.is_finite() && c.is_finite();
-        valid.then_some(Self { vertices: [a, b, c] })
+        let (e, f) = (b - a, c - a);
+        let most = |x: f64, y: f64| larger(x.abs(), y.abs());
+        let edge = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
+        let edge = if edge > SHORTEST { edge } else { f64::INFINITY };
+        valid.then_some(Self { vertices: [a, b, c], edge })
     }
 
     /// The three vertices, as given; finite.
@@ -196,10 +203,8 @@ impl Triangle {
     /// Whether the triangle has no area: its vertices lie on a line. Exact.
     pub fn is_degenerate(&self) -> bool {
         let [a, b, c] = self.vertices;
-        let (e, f) = (b - a, c - a);
-        let largest = larger(max_abs(e), max_abs(f));
-        let area = max_abs(e.cross(f));
-        let certain = largest > SHORTEST && largest < FARTHEST && area > 16.0 * U * largest * largest;
+        let area = max_abs((b - a).cross(c - a));
+        let certain = self.edge < FARTHEST && area > 16.0 * U * self.edge * self.edge;
         !certain && exact::is_degenerate(self)
     }
 
@@ -251,22 +256,16 @@ impl Triangle {
     fn line<const FMA: bool>(&self, ray: &Ray) -> Line {
         let [a, b, c] = self.vertices;
         let (e, f, s) = (b - a, c - a, ray.origin() - a);
-        let most = |x: f64, y: f64| larger(x.abs(), y.abs());
-        let edge = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
+        let edge = self.edge;
         let size = edge + (s.x.abs() + s.y.abs() + s.z.abs());
         let spread = (ERROR * edge) * size;
         // NaN if the direction is out of the range where this is proved.
         let error = spread * ray.reach();
-        if !(edge > SHORTEST && size < FARTHEST) {
+        if size >= FARTHEST {
             return Line::Unsure;
         }
         let p = cross::<FMA>(ray.direction(), f);
         let sum = dot::<FMA>(e, p);
-        // False for NaN.
-        let leans = sum.abs() > error;
-        if !leans {
-            return if self.passes_beside(ray, error) { Line::Misses } else { Line::Unsure };
-        }
         // From here on as if the sum were positive.
         let sign = 1f64.copysign(sum);
         let (sum, v) = (sum.abs(), sign * dot::<FMA>(s, p));
@@ -275,18 +274,19 @@ impl Triangle {
         let u = (sum - v) - w;
         // All three at once: one branch to foretell.
         let least = smaller(v, smaller(u, w));
-        if least < -error {
-            return Line::Misses;
-        }
-        if least > error {
+        // False for NaN.
+        if smaller(sum, least.abs()) > error {
+            if least < 0.0 {
+                return Line::Misses;
+            }
             let height = sign * dot::<FMA>(f, q);
             return Line::Hits(Crossing { e, f, p, sign, sum, v, w, height, edge, size, spread });
         }
-        Line::Unsure
+        if self.passes_beside(ray, error) { Line::Misses } else { Line::Unsure }
     }
 
-    /// Whether a line that may be parallel to the plane surely passes beside the triangle: two volumes have opposite
-    /// signs.
+    /// Whether a line of which the filter is not sure passes surely beside the triangle: two volumes have opposite signs,
+    /// be it parallel to the plane or not.
     #[cold]
     #[inline(never)]
     fn passes_beside(&self, ray: &Ray, error: f64) -> bool {
@@ -301,11 +301,8 @@ impl Triangle {
     /// Whether the ray is surely not parallel to the triangle, which surely has a plane.
     fn surely_leans(&self, ray: &Ray) -> bool {
         let [a, b, c] = self.vertices;
-        let (e, f) = (b - a, c - a);
-        let most = |x: f64, y: f64| larger(x.abs(), y.abs());
-        let edge = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
-        let error = (ERROR * edge) * edge * ray.reach();
-        edge > SHORTEST && edge < FARTHEST && ray.direction().cross(f).dot(e).abs() > error
+        let error = (ERROR * self.edge) * self.edge * ray.reach();
+        self.edge < FARTHEST && ray.direction().cross(c - a).dot(b - a).abs() > error
     }
 }
 
@@ -356,17 +353,4 @@ impl Crossing {
         let error = self.spread * (self.edge + t.abs() * ray.reach()) * inverse;
         (t - error, t + error)
     }
-}
-
-/// `v x w` in plain doubles, fused where that is asked for.
-#[inline(always)]
-fn cross<const FMA: bool>(v: DVec3, w: DVec3) -> DVec3 {
-    let part = |a: f64, b: f64, c: f64, d: f64| if FMA { a.mul_add(b, -(c * d)) } else { a * b - c * d };
-    DVec3::new(part(v.y, w.z, v.z, w.y), part(v.z, w.x, v.x, w.z), part(v.x, w.y, v.y, w.x))
-}
-
-/// `v . w` in plain doubles, fused where that is asked for.
-#[inline(always)]
-fn dot<const FMA: bool>(v: DVec3, w: DVec3) -> f64 {
-    if FMA { v.x.mul_add(w.x, v.y.mul_add(w.y, v.z * w.z)) } else { (v.x * w.x + v.y * w.y) + v.z * w.z }
 }

@@ -188,7 +188,7 @@ mod tests {
 
     impl Stages {
         fn count(&mut self, sphere: &Sphere, ray: &Ray) {
-            let newton = match sphere.line(ray) {
+            let newton = match sphere.line::<false>(ray) {
                 Line::Misses => {
                     self.filter += 1;
                     return;

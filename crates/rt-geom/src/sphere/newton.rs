@@ -29,7 +29,7 @@ fma_dispatch! {
 #[inline(always)]
 fn closest_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray, start: f64, end: f64) -> Option<f64> {
     let within = start..end;
-    let root = match sphere.line(ray) {
+    let root = match sphere.line::<FMA>(ray) {
         Line::Misses => return None,
         Line::Crosses(crossing) => {
             let roots = crossing.approximation();
@@ -54,7 +54,7 @@ fma_dispatch! {
 
 #[inline(always)]
 fn roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Roots {
-    match sphere.line(ray) {
+    match sphere.line::<FMA>(ray) {
         Line::Misses => Roots::None,
         Line::Crosses(crossing) => {
             let roots = crossing.approximation();

@@ -15,9 +15,9 @@ use glam::DVec3;
 use rt_math::exact::{round_if_certain, two_prod, two_sum};
 use rt_math::fma_dispatch;
 
-use super::{Crossing, Line, Triangle, U, cross, dot, exact};
+use super::{Crossing, Line, Triangle, U, exact};
 use crate::Ray;
-use crate::ray::{holds, max_abs};
+use crate::ray::{cross, dot, holds, max_abs};
 
 /// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to `r`.
 const REST_ERROR: f64 = 512.0 * U * U;
