@@ -352,6 +352,8 @@ fn classes(count: usize) -> Vec<(&'static str, Vec<Case>)> {
 
 #[cfg(test)]
 mod tests {
+    use rt_geom::SphereTree;
+
     use super::*;
 
     #[test]
@@ -368,5 +370,49 @@ mod tests {
         assert!(wrong("f32, the tree's margin") < wrong("f32, margin × 16"));
         assert!(wrong("f32, the tree's margin") < wrong("f32, boxes"));
         assert_eq!(wrong("exact test"), 0);
+    }
+
+    #[test]
+    fn the_restated_cull_keeps_what_the_tree_keeps() {
+        // Balls that a ray misses by up to ten margins, and two that make the scene the unit ball.
+        let anchor = |x: f64| [x, 0.0, 0.0, 0.01];
+        let mut random = Random::new(7);
+        let r = &mut random;
+        let cases: Vec<Case> = std::iter::repeat_with(|| {
+            let origin = r.unit().map(|x| x * 4.0);
+            let direction = plus(r.unit().map(|x| x * 0.5), origin, -1.0);
+            let w = direction.map(|x| x / length(direction));
+            let mut balls = [anchor(0.98); WIDTH];
+            balls[1] = anchor(-0.98);
+            for ball in &mut balls[2..] {
+                let outward = cross(w, r.unit());
+                let distance = 0.05 + r.within(1e-9, 640.0 * f32::HALF_ULP);
+                let foot = plus(origin, w, -dot(origin, w) + r.within(-0.4, 0.4));
+                let [x, y, z] = plus(foot, outward, distance / length(outward));
+                *ball = [x, y, z, 0.05];
+            }
+            let [[ox, oy, oz], [dx, dy, dz]] = [origin, direction];
+            Case { ray: [ox, oy, oz, dx, dy, dz], balls }
+        })
+        .filter(|case| truth(case) == 0)
+        .take(500)
+        .collect();
+        let ours =
+            METHODS.iter().find(|method| method.name == "f32, the tree's margin").expect("it is there");
+        let mut kept = vec![0; cases.len()];
+        (ours.prepare)(&cases)(&mut kept);
+        let restated: u32 = kept.iter().map(|kept| kept.count_ones()).sum();
+        let tests = |case: &Case| {
+            let sphere = |ball: [f64; 4]| Sphere::new(dvec3(&ball, 0), ball[3]).expect("radii are positive");
+            let tree = SphereTree::new(case.balls.map(sphere).to_vec(), Vec::new());
+            let ray = Ray::new(dvec3(&case.ray, 0), dvec3(&case.ray, 3)).expect("a valid ray");
+            tree.closest_counted(&ray, 0.0..f64::INFINITY).1.tests
+        };
+        let tree: usize = cases.iter().map(tests).sum();
+        let share = f64::from(restated) / tree as f64;
+        assert!(
+            tree > 300 && (share - 1.0).abs() < 0.02,
+            "the tree keeps {tree}, the restated cull {restated}"
+        );
     }
 }

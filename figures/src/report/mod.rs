@@ -68,7 +68,7 @@ struct Report {
     pictures: Vec<Pictured>,
 }
 
-const FULL: Effort = Effort { cases: 2048, rounds: 11, timing: 300_000, spheres: 100_000, rows: 150 };
+const FULL: Effort = Effort { cases: 2048, rounds: 11, timing: 300_000, spheres: 1_000_000, rows: 150 };
 const QUICK: Effort = Effort { cases: 128, rounds: 9, timing: 20_000, spheres: 10_000, rows: 48 };
 
 /// Measures, or reads what was measured, and writes or compares it.

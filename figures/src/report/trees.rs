@@ -51,7 +51,7 @@ struct Contestant<'a> {
 }
 
 /// Sphere tests that the plain loop may make in one round.
-const LOOP: usize = 4_000_000;
+const LOOP: usize = 16_000_000;
 
 /// Measures growing clouds.
 pub(super) fn growth(effort: Effort) -> Vec<Growth> {
