@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::cases::Class;
-use super::methods::{Answer, Method};
+use super::methods::{Answer, Method, Run};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -156,8 +156,9 @@ pub(super) fn kernel<const M: usize, const N: usize>(
     for class in classes {
         let truths: Vec<Answer<N>> = class.cases.par_iter().map(reference).collect();
         let mut answers = vec![Answer::without_values(0); class.cases.len()];
+        let runs: Vec<Run<'_, N>> = methods.iter().map(|method| (method.prepare)(&class.cases)).collect();
         let times = take_turns(methods.len(), class.cases.len(), effort, |i| {
-            (methods[i].run)(black_box(&class.cases), &mut answers);
+            black_box(&runs[i])(&mut answers);
             black_box(&mut answers);
         });
         for ((method, measured), time) in methods.iter().zip(&mut measured).zip(times) {
@@ -220,7 +221,7 @@ fn errors<const M: usize, const N: usize>(
     judge: fn(&[f64; M], Answer<N>) -> Answer<N>,
 ) -> Errors {
     let mut answers = vec![Answer::without_values(0); cases.len()];
-    (method.run)(cases, &mut answers);
+    (method.prepare)(cases)(&mut answers);
     let mut errors = Errors { cases: cases.len(), ..Errors::default() };
     let mut distances = Vec::new();
     for ((case, &answer), truth) in cases.iter().zip(&answers).zip(truths) {

@@ -18,13 +18,16 @@ pub(in super::super) fn enclosing() -> Vec<Method<{ 4 * COUNT }, 4>> {
             answer(spheres(case).reduce(merged))
         }),
         Method::new("Ritter", "Ritter 1990, for spheres", ritter),
-        Method::ours("ours", |case| {
-            let spheres: [Sphere; COUNT] = std::array::from_fn(|i| {
-                Sphere::new(dvec3(case, 4 * i), case[4 * i + 3]).expect("cases are valid spheres")
-            });
-            answer(enclosing_sphere(&spheres).map(|found| (found.sphere.center(), found.sphere.radius())))
+        Method::ours_on("ours", shapes, |spheres| {
+            answer(enclosing_sphere(spheres).map(|found| (found.sphere.center(), found.sphere.radius())))
         }),
     ]
+}
+
+fn shapes(case: &[f64; 4 * COUNT]) -> [Sphere; COUNT] {
+    std::array::from_fn(|i| {
+        Sphere::new(dvec3(case, 4 * i), case[4 * i + 3]).expect("cases are valid spheres")
+    })
 }
 
 type Ball = (DVec3, f64);

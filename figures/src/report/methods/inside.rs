@@ -1,6 +1,7 @@
 //! Whether a point, projected orthogonally, lies in a triangle. A case is the point and three vertices; the verdict is 1
 //! inside, boundary included; there is no value.
 
+use glam::DVec3;
 use rt_geom::{Inside, Triangle, inside_triangle};
 
 use super::real::{Real, Vector, cross, dot, dvec3, sub, vector};
@@ -25,13 +26,16 @@ pub(in super::super) fn inside() -> Vec<Method<12, 0>> {
             verdict(barycentric(point, vertices))
         })
         .verdict_alone(),
-        Method::ours("ours", move |case| {
-            let [a, b, c] = [3, 6, 9].map(|from| dvec3(case, from));
-            let triangle = Triangle::new(a, b, c).expect("cases are valid triangles");
-            verdict(inside_triangle(dvec3(case, 0), &triangle) != Inside::Outside)
+        Method::ours_on("ours", shapes, move |(point, triangle)| {
+            verdict(inside_triangle(*point, triangle) != Inside::Outside)
         })
         .verdict_alone(),
     ]
+}
+
+fn shapes(case: &[f64; 12]) -> (DVec3, Triangle) {
+    let [a, b, c] = [3, 6, 9].map(|from| dvec3(case, from));
+    (dvec3(case, 0), Triangle::new(a, b, c).expect("cases are valid triangles"))
 }
 
 /// No turn of the three edges around the point is against the triangle's own.

@@ -44,8 +44,17 @@ impl<const N: usize> Answer<N> {
     }
 }
 
-/// Runs a method over many cases; the loop and the method are compiled together.
-type Run<const M: usize, const N: usize> = Box<dyn Fn(&[[f64; M]], &mut [Answer<N>])>;
+/// Runs a method over the cases that it was prepared for; the loop and the method are compiled together.
+pub(super) type Run<'a, const N: usize> = Box<dyn Fn(&mut [Answer<N>]) + 'a>;
+
+/// Brings cases into the form that a method takes, before time is taken.
+type Prepare<const M: usize, const N: usize> = Box<dyn for<'a> Fn(&'a [[f64; M]]) -> Run<'a, N>>;
+
+fn prepare<const M: usize, const N: usize>(
+    prepare: impl for<'a> Fn(&'a [[f64; M]]) -> Run<'a, N> + 'static,
+) -> Prepare<M, N> {
+    Box::new(prepare)
+}
 
 /// A method of a kernel whose cases are `M` numbers and whose answers hold `N` values.
 pub(super) struct Method<const M: usize, const N: usize> {
@@ -57,25 +66,44 @@ pub(super) struct Method<const M: usize, const N: usize> {
     pub(super) ours: bool,
     /// Whether it gives values, or the verdict alone.
     pub(super) has_values: bool,
-    pub(super) run: Run<M, N>,
+    pub(super) prepare: Prepare<M, N>,
 }
 
 impl<const M: usize, const N: usize> Method<M, N> {
     fn new(
         name: &'static str,
         source: &'static str,
-        method: impl Fn(&[f64; M]) -> Answer<N> + 'static,
+        method: impl Fn(&[f64; M]) -> Answer<N> + Copy + 'static,
     ) -> Self {
-        let run: Run<M, N> = Box::new(move |cases, answers| {
-            for (case, answer) in cases.iter().zip(answers) {
-                *answer = method(case);
-            }
+        let prepare = prepare(move |cases| {
+            Box::new(move |answers| {
+                for (case, answer) in cases.iter().zip(answers) {
+                    *answer = method(case);
+                }
+            })
         });
-        Self { name, source, ours: false, has_values: true, run }
+        Self { name, source, ours: false, has_values: true, prepare }
     }
 
-    fn ours(name: &'static str, method: impl Fn(&[f64; M]) -> Answer<N> + 'static) -> Self {
+    fn ours(name: &'static str, method: impl Fn(&[f64; M]) -> Answer<N> + Copy + 'static) -> Self {
         Self { ours: true, ..Self::new(name, "this project", method) }
+    }
+
+    /// A kernel of ours that takes checked shapes, which are built before time is taken, as in a scene.
+    fn ours_on<S: 'static>(
+        name: &'static str,
+        build: impl Fn(&[f64; M]) -> S + Copy + 'static,
+        method: impl Fn(&S) -> Answer<N> + Copy + 'static,
+    ) -> Self {
+        let prepare = prepare(move |cases| {
+            let shapes: Vec<S> = cases.iter().map(build).collect();
+            Box::new(move |answers| {
+                for (shape, answer) in shapes.iter().zip(answers) {
+                    *answer = method(shape);
+                }
+            })
+        });
+        Self { name, source: "this project", ours: true, has_values: true, prepare }
     }
 
     fn verdict_alone(self) -> Self {

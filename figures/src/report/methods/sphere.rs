@@ -15,15 +15,11 @@ pub(in super::super) fn sphere() -> Vec<Method<10, 1>> {
         Method::new("RTG f32", "Haines, Günther, Akenine-Möller, Ray Tracing Gems, chapter 7", gems::<f32>),
         Method::new("RTG", "Haines, Günther, Akenine-Möller, Ray Tracing Gems, chapter 7", gems::<f64>),
         Method::new("projection", "the form of Embree's sphere intersector", projection::<f64>),
-        Method::ours("ours, verdict", |case| {
-            let (ray, sphere) = shapes(case);
-            Answer::without_values(u8::from(sphere.any(&ray, 0.0..f64::INFINITY)))
+        Method::ours_on("ours, verdict", shapes, |(ray, sphere)| {
+            Answer::without_values(u8::from(sphere.any(ray, 0.0..f64::INFINITY)))
         })
         .verdict_alone(),
-        Method::ours("ours", |case| {
-            let (ray, sphere) = shapes(case);
-            hit(sphere.closest(&ray, 0.0..f64::INFINITY))
-        }),
+        Method::ours_on("ours", shapes, |(ray, sphere)| hit(sphere.closest(ray, 0.0..f64::INFINITY))),
     ]
 }
 

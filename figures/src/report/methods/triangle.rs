@@ -20,15 +20,11 @@ pub(in super::super) fn triangle() -> Vec<Method<15, 1>> {
         }),
         Method::new("Woop", "Woop, Benthin, Wald 2013", woop),
         Method::new("plane form", "the original report: ax + by + cz = 1, then orientations", plane_form),
-        Method::ours("ours, verdict", |case| {
-            let (ray, triangle) = shapes(case);
-            Answer::without_values(u8::from(triangle.any(&ray, 0.0..f64::INFINITY)))
+        Method::ours_on("ours, verdict", shapes, |(ray, triangle)| {
+            Answer::without_values(u8::from(triangle.any(ray, 0.0..f64::INFINITY)))
         })
         .verdict_alone(),
-        Method::ours("ours", |case| {
-            let (ray, triangle) = shapes(case);
-            hit(triangle.closest(&ray, 0.0..f64::INFINITY))
-        }),
+        Method::ours_on("ours", shapes, |(ray, triangle)| hit(triangle.closest(ray, 0.0..f64::INFINITY))),
     ]
 }
 
