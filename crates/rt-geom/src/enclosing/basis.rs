@@ -15,7 +15,7 @@ use crate::Sphere;
 /// The sphere that one to four spheres touch from inside, with its center in the flat that their centers span.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tangent<T> {
-    /// The spheres' places in the set, the largest sphere first. Those beyond `len` mean nothing.
+    /// The spheres' places in the set, the largest sphere first. Those beyond `len` repeat some of them.
     index: [usize; 4],
     len: usize,
     /// The center less that of the first sphere.
@@ -58,15 +58,27 @@ impl<T: Real> Tangent<T> {
         &self.index[..self.len]
     }
 
+    /// The places of the spheres, the largest first; if they are fewer than four, some are repeated.
+    #[inline(always)]
+    pub(super) fn padded(&self) -> [usize; 4] {
+        self.index
+    }
+
+    /// Whether a sphere is of the support.
+    #[inline(always)]
+    pub(super) fn has(&self, index: usize) -> bool {
+        let [a, b, c, d] = self.index;
+        (a == index) | (b == index) | (c == index) | (d == index)
+    }
+
     /// Adds a sphere without solving.
     #[inline(always)]
     fn push(&mut self, index: usize, spheres: &[Sphere]) {
-        let first = self.index[0];
-        if spheres[index].radius() > spheres[first].radius() {
-            (self.index[0], self.index[self.len]) = (index, first);
-        } else {
-            self.index[self.len] = index;
-        }
+        // (Without a branch: which is larger cannot be foretold.)
+        let both = [self.index[0], index];
+        let larger = usize::from(spheres[index].radius() > spheres[both[0]].radius());
+        self.index[self.len] = both[1 - larger];
+        self.index[0] = both[larger];
         self.len += 1;
     }
 
@@ -83,11 +95,13 @@ impl<T: Real> Tangent<T> {
                 }
             }
         }
+        let [first, ..] = self.index;
+        self.index = self.index.map(|index| if index == out { first } else { index });
         out
     }
 
-    /// Solves for the center and the radius. False if no sphere was found that all touch from inside; then the
-    /// numbers mean nothing. Coordinates of the center may be negative.
+    /// Solves for the center and the radius. False if no sphere was found that all touch from inside: if that is for the
+    /// want of a root, nothing has changed. Coordinates of the center may be negative.
     #[inline(always)]
     fn solve(&mut self, spheres: &[Sphere]) -> bool {
         let base = &spheres[self.index[0]];
@@ -101,10 +115,10 @@ impl<T: Real> Tangent<T> {
         if self.len == 2 {
             let p2 = dot(p1, p1);
             let length = p2.sqrt();
+            let inverse = T::ONE / p2;
             let rho = (length + s1) * T::from(0.5);
-            let inverse = T::ONE / length;
-            let share = rho * inverse;
-            let dual = times(p1, inverse * inverse);
+            let share = rho * (length * inverse);
+            let dual = times(p1, inverse);
             self.x = [p1[0] * share, p1[1] * share, p1[2] * share];
             self.rho = rho;
             self.weight = [T::ONE - share, share, T::ZERO, T::ZERO];
@@ -116,26 +130,33 @@ impl<T: Real> Tangent<T> {
         let (p2, s2, h2) = relative::<T>(&spheres[self.index[2]], c0, r0);
         let n = cross(p1, p2);
         if self.len == 3 {
-            let inverse = T::ONE / dot(n, n);
-            self.dual = [times(cross(p2, n), inverse), times(cross(n, p1), inverse), zero];
-            return self.finish([h1, h2, T::ZERO], [s1, s2, T::ZERO]);
+            return self.finish(
+                dot(n, n),
+                [cross(p2, n), cross(n, p1), zero],
+                [h1, h2, T::ZERO],
+                [s1, s2, T::ZERO],
+            );
         }
         let (p3, s3, h3) = relative::<T>(&spheres[self.index[3]], c0, r0);
-        let inverse = T::ONE / dot(n, p3);
-        self.dual = [times(cross(p2, p3), inverse), times(cross(p3, p1), inverse), times(n, inverse)];
-        self.finish([h1, h2, h3], [s1, s2, s3])
+        self.finish(dot(n, p3), [cross(p2, p3), cross(p3, p1), n], [h1, h2, h3], [s1, s2, s3])
     }
 
-    /// Solves the quadratic for `rho` once the dual basis is there.
-    #[inline]
-    fn finish(&mut self, h: [T; 3], s: [T; 3]) -> bool {
-        let (a, q) = (combine(h, &self.dual), combine(s, &self.dual));
+    /// Solves the quadratic for `rho`, given the dual basis times `scale`. (It is divided out as late as can be: the
+    /// processor does other things meanwhile.)
+    #[inline(always)]
+    fn finish(&mut self, scale: T, dual: [[T; 3]; 3], h: [T; 3], s: [T; 3]) -> bool {
+        let inverse = T::ONE / scale;
+        let (a, q) = (times(combine(h, &dual), inverse), times(combine(s, &dual), inverse));
         // (q.q - 1) rho² + 2 a.q rho + a.a = 0: the smallest root that is not negative, without cancellation.
         let (second, first, constant) = (dot(q, q) - T::ONE, dot(a, q), dot(a, a));
         let root = (first * first - second * constant).sqrt();
         let (numerator, denominator) =
             if T::ZERO.below(first) { (first + root, -second) } else { (constant, root - first) };
         let rho = numerator / denominator;
+        if rho.below(T::ZERO) | !rho.is_finite() {
+            return false;
+        }
+        self.dual = dual.map(|k| times(k, inverse));
         let x = [a[0] + rho * q[0], a[1] + rho * q[1], a[2] + rho * q[2]];
         let [k1, k2, k3] = &self.dual;
         let (w1, w2, w3) = (dot(*k1, x), dot(*k2, x), dot(*k3, x));
@@ -143,20 +164,21 @@ impl<T: Real> Tangent<T> {
         self.rho = rho;
         self.weight = [T::ONE - (w1 + w2 + w3), w1, w2, w3];
         self.q = q;
-        !rho.below(T::ZERO) && rho.is_finite() && self.weight[0].is_finite()
+        self.weight[0].is_finite()
     }
 
     /// The place of the most negative coordinate, other than that of the sphere `keep`; `None` if none is negative.
     #[inline(always)]
     fn most_negative(&self, keep: usize) -> Option<usize> {
+        // Those beyond `len` are zero. (Without a branch: which it is cannot be foretold.)
         let mut least = T::ZERO;
-        let mut found = None;
+        let mut found = usize::MAX;
         for place in 0..4 {
-            if place < self.len && self.weight[place].below(least) && self.index[place] != keep {
-                (least, found) = (self.weight[place], Some(place));
-            }
+            let less = self.weight[place].below(least) & (self.index[place] != keep);
+            least = if less { self.weight[place] } else { least };
+            found = if less { place } else { found };
         }
-        found
+        (found < 4).then_some(found)
     }
 
     /// The center less `origin`, and the radius.
@@ -175,6 +197,26 @@ impl<T: Real> Tangent<T> {
         dot(from, from).sqrt() + (T::from(sphere.radius()) - radius)
     }
 
+    /// The place in `old`, the spheres that were solved last, of the one that leaves first for one more: weight moves to that one and off the others in proportion
+    /// to its barycentric coordinates among them, and that of one runs out first.
+    #[inline(always)]
+    fn leaves(&self, old: [usize; 4], index: usize, spheres: &[Sphere]) -> usize {
+        let p = offset::<T>(spheres[index].center(), spheres[old[0]].center());
+        let [k1, k2, k3] = self.dual;
+        let (k1, k2, k3) = (dot(k1, p), dot(k2, p), dot(k3, p));
+        let share = [T::ONE - (k1 + k2 + k3), k1, k2, k3];
+        // weight[i] / share[i] < weight[out] / share[out], without dividing
+        let mut out = 0;
+        let mut some = T::ZERO.below(share[0]);
+        for place in 1..4 {
+            let sooner = !some | (self.weight[place] * share[out]).below(self.weight[out] * share[place]);
+            if T::ZERO.below(share[place]) & sooner {
+                (out, some) = (place, true);
+            }
+        }
+        out
+    }
+
     /// Becomes the minimal sphere of these spheres and one more that sticks out of theirs.
     ///
     /// Drops what the signs of the coordinates say must go, checks that what was dropped lies inside, and otherwise
@@ -187,29 +229,22 @@ impl<T: Real> Tangent<T> {
         let mut dropped = [index; 4];
         let mut drops = 0;
         if self.len == 4 {
-            // Five spheres: weight moves to the new one and off the others in proportion to its barycentric
-            // coordinates among them; the one whose weight runs out first leaves.
-            let p = offset::<T>(spheres[index].center(), spheres[self.index[0]].center());
-            let [k1, k2, k3] = self.dual;
-            let (k1, k2, k3) = (dot(k1, p), dot(k2, p), dot(k3, p));
-            let share = [T::ONE - (k1 + k2 + k3), k1, k2, k3];
-            // weight[i] / share[i] < weight[out] / share[out], without dividing
-            let mut out = 0;
-            let mut some = T::ZERO.below(share[0]);
-            for place in 1..4 {
-                let sooner =
-                    !some || (self.weight[place] * share[out]).below(self.weight[out] * share[place]);
-                if T::ZERO.below(share[place]) && sooner {
-                    (out, some) = (place, true);
-                }
-            }
-            dropped[0] = self.remove(out, spheres);
+            let leaves = self.leaves(old, index, spheres);
+            dropped[0] = self.remove(leaves, spheres);
             drops = 1;
         }
         self.push(index, spheres);
         let solved = loop {
             if !self.solve(spheres) {
-                break false;
+                if self.len < 4 || drops > 0 {
+                    break false;
+                }
+                // No sphere touches all four.
+                let leaves = old[self.leaves(old, index, spheres)];
+                let place = self.index.iter().position(|&other| other == leaves).unwrap_or(0);
+                dropped[0] = self.remove(place, spheres);
+                drops = 1;
+                continue;
             }
             let Some(place) = self.most_negative(index) else { break true };
             dropped[drops] = self.remove(place, spheres);

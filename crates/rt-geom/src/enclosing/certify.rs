@@ -15,7 +15,7 @@ use crate::Sphere;
 /// Half the distance from 1 to the next double, the relative error of one rounded operation.
 pub(super) const U: f64 = f64::EPSILON / 2.0;
 
-/// Relative error bound of a reach computed in double-double arithmetic (proved: 75 u²).
+/// Relative error bound of a reach computed in double-double arithmetic (proved: 75 u² at most).
 const REACH_ERROR: f64 = 128.0 * U * U;
 
 /// A center, and the radius around it that is proved to enclose some spheres, between two doubles.
@@ -83,6 +83,8 @@ struct Reach<S: Simd> {
     offset: [f64x4<S>; 3],
     /// The length of the offset, rounded.
     distance: f64x4<S>,
+    /// Its inverse, rounded.
+    inverse: f64x4<S>,
     /// The reach is `high + low`, up to `error`; `high` is the sum rounded.
     high: f64x4<S>,
     low: f64x4<S>,
@@ -108,8 +110,9 @@ fn reach<S: Simd>(simd: S, spheres: [&Sphere; 4], center: DVec3) -> Reach<S> {
     let tail = (x_error + y_error) + (z_error + (sum_error + square_error));
     let root = square.sqrt();
     let (again, again_error) = two_square(simd, root);
-    let rest = (((square - again) - again_error) + tail) / (root + root);
-    // At the very center the root is zero, and the quotient not a number.
+    let inverse = f64x4::splat(simd, 1.0) / root;
+    let rest = (((square - again) - again_error) + tail) * (inverse * 0.5);
+    // At the very center the root is zero, and the product not a number.
     let zero = f64x4::splat(simd, 0.0);
     let rest = root.simd_eq(zero).select(zero, rest);
     let (high, low) = two_sum(root, radius);
@@ -118,15 +121,18 @@ fn reach<S: Simd>(simd: S, spheres: [&Sphere; 4], center: DVec3) -> Reach<S> {
     let low = low - (sum - high);
     let same = (dx.abs() + dy.abs() + dz.abs()).simd_eq(zero);
     let error = same.select(zero, sum * REACH_ERROR);
-    Reach { offset: [dx, dy, dz], distance: root, high: sum, low, error }
+    Reach { offset: [dx, dy, dz], distance: root, inverse, high: sum, low, error }
 }
 
 /// The double after a positive normal one, lane by lane (S. Rump, P. Zimmermann, S. Boldo, G. Melquiond, "Computing
 /// predecessor and successor in rounding to nearest", 2009).
 #[inline(always)]
 fn next_up<S: Simd>(a: f64x4<S>) -> f64x4<S> {
-    a + a * (U * (1.0 + 2.0 * U))
+    a + a * SPACING
 }
+
+/// A number times this, added to or taken from the number, gives the double after or before it, if it is normal.
+const SPACING: f64 = U * (1.0 + 2.0 * U);
 
 /// The smallest double that is not below `high + low`, for `high` positive and normal and the larger by far.
 #[inline(always)]
@@ -141,7 +147,7 @@ fn round_up<S: Simd>(simd: S, high: f64x4<S>, low: f64x4<S>) -> f64 {
 ///
 /// Returns the bracket, a lower bound for the radius of any sphere that encloses the spheres of `tangent`, and whether
 /// the nearest doubles are clear.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64, bool) {
     simd.vectorize(
         #[inline(always)]
@@ -158,8 +164,8 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
         let radius = first.radius();
         return (Bracket { center: origin, low: radius, high: radius }, radius, true);
     }
-    let at = |place: usize| support.get(place).map_or(first, |&index| &all[index]);
-    let spheres = [at(0), at(1), at(2), at(3)];
+    let [_, b, c, d] = tangent.padded();
+    let spheres = [first, &all[b], &all[c], &all[d]];
     let [k1, k2, k3] = tangent.dual;
     let q = DVec3::from(tangent.q);
     let (k1, k2, k3) = (DVec3::from(k1), DVec3::from(k2), DVec3::from(k3));
@@ -174,7 +180,7 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
         let moved = residual * reach.distance;
         let a = k1 * moved[1] + k2 * moved[2] + k3 * moved[3];
         let x = center - origin;
-        let wider = x.dot(a) / (reach.distance[0] - x.dot(q));
+        let wider = x.dot(a) * (1.0 / (reach.distance[0] - x.dot(q)));
         // The rounding of the center may have left the flat of the centers: go back too, by what the dual basis
         // leaves of the difference from the unrounded center.
         let [dx, dy, dz] = reach.offset;
@@ -186,9 +192,9 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
         let next = if next.is_finite() { next } else { center };
         let step = next - center;
         // The reaches at the next center: |v + e| is between |v| + u.e and that plus |e|² / 2|v|.
-        let along = (dx * step.x + dy * step.y + dz * step.z) / reach.distance;
+        let along = (dx * step.x + dy * step.y + dz * step.z) * reach.inverse;
         let length = step.length();
-        let bend = length * length / reach.distance;
+        let bend = reach.inverse * (length * length);
         let none = f64x4::splat(simd, 0.0);
         let still = f64x4::splat(simd, length).simd_eq(none);
         let along = still.select(none, along);
@@ -213,9 +219,7 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
             high: round_up(simd, reach.high, low + error),
         };
         // The lower bound: weights that nearly balance the directions from the touching points to the center.
-        let weights = tangent.weight;
-        let weight = |place: usize| if place < support.len() { weights[place].max(0.0) } else { 0.0 };
-        let weight = f64x4::simd_from(simd, [weight(0), weight(1), weight(2), weight(3)]);
+        let weight = f64x4::simd_from(simd, tangent.weight).max(none);
         let share = weight * reach.distance;
         let total = share.reduce_sum();
         let mean = (share * ((reach.high - base) + low)).reduce_sum() / total;
@@ -230,7 +234,7 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
         let slack = error.reduce_max() + pull * far + 8.0 * U * mean.abs();
         let below = mean - slack * (1.0 + 16.0 * U);
         let sum = base + below;
-        let bound = if below - (sum - base) < 0.0 { sum.next_down() } else { sum };
+        let bound = sum - if below - (sum - base) < 0.0 { sum * SPACING } else { 0.0 };
         let bound = if bound > first.radius() { bound } else { first.radius() };
         return (bracket, bound, settled);
     }
@@ -258,7 +262,7 @@ const BALANCE: f64 = 1.0 / 67_108_864.0; // 2^-26
 
 impl Bracket {
     /// Widens the bracket so that it holds for four more spheres (which may repeat).
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn enclose<S: Simd>(&mut self, simd: S, spheres: [&Sphere; 4]) {
         simd.vectorize(
             #[inline(always)]

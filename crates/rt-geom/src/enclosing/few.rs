@@ -8,37 +8,35 @@ use super::certify::U;
 use super::lanes::Lanes;
 use crate::Sphere;
 
-/// The minimal sphere of the spheres at the places `these`, given as `lanes` too, starting from the minimal sphere of
-/// some of them: adds the sphere that sticks out farthest, until none does.
-#[inline(always)]
+/// Turns the minimal sphere of some of the spheres at the places `these`, which are given as `lanes` too, into that of
+/// all of them: adds the sphere that sticks out farthest, until none does.
+#[inline(never)]
 pub(super) fn pivot<S: Simd, const VECTORS: usize>(
     simd: S,
-    start: &Tangent<f64>,
+    tangent: &mut Tangent<f64>,
     lanes: &Lanes<S, VECTORS>,
     these: &[usize],
     spheres: &[Sphere],
     origin: DVec3,
-) -> Tangent<f64> {
+) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut tangent = *start;
             for _ in 0..MAX_PIVOTS {
                 let (center, radius) = tangent.sphere(spheres, origin);
                 let (lane, measure) = lanes.farthest(simd, center, radius);
                 let far = these[lane];
-                if measure <= radius * radius * TOUCHES || tangent.support().contains(&far) {
+                if (measure <= radius * radius * TOUCHES) | tangent.has(far) {
                     break;
                 }
                 tangent.add(far, spheres);
             }
-            tangent
         },
-    )
+    );
 }
 
 /// The measure of a sphere that touches from inside is below this share of the squared radius: rounding.
-const TOUCHES: f64 = 16.0 * U;
+pub(super) const TOUCHES: f64 = 16.0 * U;
 
 /// No set known needs more than a few dozen pivots. What is left to do after so many, the certificate sees.
 const MAX_PIVOTS: usize = 100;

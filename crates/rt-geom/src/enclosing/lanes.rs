@@ -1,6 +1,6 @@
 //! Up to 64 spheres side by side, eight to a vector, and the scan for the one that sticks out farthest.
 
-use fearless_simd::{Simd, f64x8, prelude::*, u64x8};
+use fearless_simd::{Simd, f64x4, f64x8, prelude::*, u64x8};
 use glam::DVec3;
 
 use crate::Sphere;
@@ -30,32 +30,26 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
         let mut rest = spheres.clone();
         let Some(first) = spheres.clone().next() else { return Self { vectors, used: 0, count } };
         for vector in &mut vectors[..used] {
-            let mut at = [first; LANES];
-            for at in &mut at {
+            let mut eight = [first; LANES];
+            for at in &mut eight {
                 let Some(next) = rest.next() else { break };
                 *at = next;
             }
-            *vector = [
-                f64x8::simd_from(simd, at.map(|sphere| sphere.center().x)) - origin.x,
-                f64x8::simd_from(simd, at.map(|sphere| sphere.center().y)) - origin.y,
-                f64x8::simd_from(simd, at.map(|sphere| sphere.center().z)) - origin.z,
-                f64x8::simd_from(simd, at.map(Sphere::radius)),
-            ];
+            *vector = columns(simd, eight, origin);
         }
         Self { vectors, used, count }
     }
 
-    /// The sphere that reaches farthest from the origin, and how far, up to the six lowest bits.
+    /// A sphere that reaches far from the origin, and the largest `d² + r²`, up to the six lowest bits: the square of the
+    /// largest reach is between this and twice as much.
     #[inline(always)]
     pub(super) fn farthest_from_origin(&self, simd: S) -> (usize, f64) {
         let mut most = f64x8::splat(simd, 0.0);
         let mut lane = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
         for [x, y, z, r] in &self.vectors[..self.used] {
-            // An infinite reach with a mark would be no number.
-            let reach = ((*x * *x + *y * *y + *z * *z).sqrt() + *r).min(f64x8::splat(simd, f64::MAX));
-            let bits: u64x8<S> = reach.bitcast();
-            let marked: f64x8<S> = ((bits & !63) | lane).bitcast();
-            most = most.max(marked);
+            // An infinite number with a mark would be none.
+            let square = (*x * *x + *y * *y + (*z * *z + *r * *r)).min(f64x8::splat(simd, f64::MAX));
+            most = most.max(marked(square, lane));
             lane += LANES as u64;
         }
         let most = most.reduce_max();
@@ -66,19 +60,14 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
     /// Returns the sphere that sticks out farthest of the one around `center`, and a measure of how far: positive if
     /// it sticks out.
     ///
-    /// The measure is `d² - (radius - r)²`: the excess times about twice the radius, without a root. Its six lowest bits
-    /// carry the index, so that one maximum finds both. (An unused lane stands for the first sphere.)
+    /// The six lowest bits of the [`measure`] carry the index, so that one maximum finds both. (An unused lane stands for
+    /// the first sphere.)
     #[inline(always)]
     pub(super) fn farthest(&self, simd: S, center: [f64; 3], radius: f64) -> (usize, f64) {
         let mut most = f64x8::splat(simd, f64::NEG_INFINITY);
         let mut lane = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
-        for [x, y, z, r] in &self.vectors[..self.used] {
-            let (dx, dy, dz) = (*x - center[0], *y - center[1], *z - center[2]);
-            let room = radius - *r;
-            let measure = (dx * dx + dy * dy + dz * dz) - room * room;
-            let bits: u64x8<S> = measure.bitcast();
-            let marked: f64x8<S> = ((bits & !63) | lane).bitcast();
-            most = most.max(marked);
+        for vector in &self.vectors[..self.used] {
+            most = most.max(marked(measure(simd, vector, center, radius), lane));
             lane += LANES as u64;
         }
         let most = most.reduce_max();
@@ -90,12 +79,51 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
     #[inline(always)]
     pub(super) fn beyond(&self, simd: S, center: [f64; 3], limit: f64) -> u64 {
         let mut found = 0;
-        for (i, [x, y, z, r]) in self.vectors[..self.used].iter().enumerate() {
-            let (dx, dy, dz) = (*x - center[0], *y - center[1], *z - center[2]);
-            let room = f64x8::splat(simd, limit) - *r;
-            let beyond = (dx * dx + dy * dy + dz * dz).simd_ge(room * room.abs()).to_bitmask();
-            found |= beyond << (LANES * i);
+        for (i, vector) in self.vectors[..self.used].iter().enumerate() {
+            let beyond = measure(simd, vector, center, limit).simd_ge(f64x8::splat(simd, 0.0));
+            found |= beyond.to_bitmask() << (LANES * i);
         }
         found
     }
+}
+
+#[inline(always)]
+fn row<S: Simd>(simd: S, sphere: &Sphere) -> f64x4<S> {
+    let c = sphere.center();
+    f64x4::simd_from(simd, [c.x, c.y, c.z, sphere.radius()])
+}
+
+/// Eight spheres by coordinate, relative to an origin: x, y, z and radius.
+#[inline(always)]
+pub(super) fn columns<S: Simd>(simd: S, eight: [&Sphere; LANES], origin: DVec3) -> [f64x8<S>; 4] {
+    let [a, b, c, d, e, f, g, h] = eight.map(
+        #[inline(always)]
+        |sphere| row(simd, sphere),
+    );
+    let (xz, yr) = a.combine(b).deinterleave(c.combine(d));
+    let (xz_more, yr_more) = e.combine(f).deinterleave(g.combine(h));
+    let (x, z) = xz.deinterleave(xz_more);
+    let (y, r) = yr.deinterleave(yr_more);
+    [x - origin.x, y - origin.y, z - origin.z, r]
+}
+
+/// How far spheres stick out of the one around `center`: `d² - (radius - r)²`, where the square has the sign of what is
+/// squared. That is the excess times about twice the radius, without a root; positive if a sphere sticks out.
+#[inline(always)]
+pub(super) fn measure<S: Simd>(
+    simd: S,
+    [x, y, z, r]: &[f64x8<S>; 4],
+    center: [f64; 3],
+    radius: f64,
+) -> f64x8<S> {
+    let (dx, dy, dz) = (*x - center[0], *y - center[1], *z - center[2]);
+    let room = f64x8::splat(simd, radius) - *r;
+    (dx * dx + dy * dy + dz * dz) - room * room.abs()
+}
+
+/// Numbers whose six lowest bits say where they are from.
+#[inline(always)]
+pub(super) fn marked<S: Simd>(numbers: f64x8<S>, place: u64x8<S>) -> f64x8<S> {
+    let bits: u64x8<S> = numbers.bitcast();
+    ((bits & !63) | place).bitcast()
 }

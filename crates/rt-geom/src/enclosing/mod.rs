@@ -12,10 +12,10 @@ mod extreme;
 mod few;
 mod lanes;
 mod many;
-#[allow(dead_code, reason = "for the build of the tree")]
 pub(crate) mod nodes;
 mod real;
 mod refine;
+mod stage;
 
 #[cfg(not(target_arch = "x86_64"))]
 use fearless_simd::dispatch;
@@ -27,7 +27,7 @@ use basis::Tangent;
 use certify::{Bracket, U};
 use extreme::extreme;
 use lanes::{LANES, Lanes};
-use many::Blocks;
+use stage::{Stage, decided};
 
 /// What [`enclosing_sphere`] gives: the sphere, the spheres that decide it, and how small any other could be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +95,8 @@ use by_level;
 
 /// Within these limits of the largest reach no fourth power over- or underflows harmfully, in double-double either.
 const ORDINARY: std::ops::Range<f64> = 1e-40..1e50;
+/// The same for a number between the square of the largest reach and half of it.
+const ORDINARY_SQUARES: std::ops::Range<f64> = 1e-80..0.5e100;
 
 #[inline(always)]
 fn enclosing<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
@@ -106,6 +108,10 @@ fn enclosing<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
         _ if spheres.len() <= LANES => simd.vectorize(
             #[inline(always)]
             || few_spheres::<S, 1>(simd, spheres),
+        ),
+        _ if spheres.len() <= 2 * LANES => simd.vectorize(
+            #[inline(always)]
+            || few_spheres::<S, 2>(simd, spheres),
         ),
         _ if spheres.len() <= 8 * LANES => simd.vectorize(
             #[inline(always)]
@@ -135,19 +141,18 @@ fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<E
 fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
     let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
-    let (far, reach) = lanes.farthest_from_origin(simd);
-    if !ORDINARY.contains(&reach) {
+    let (far, square) = lanes.farthest_from_origin(simd);
+    if !ORDINARY_SQUARES.contains(&square) {
         return extreme(spheres);
     }
-    let tangent =
-        few::pivot(simd, &Tangent::single(far), &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
+    let mut tangent = Tangent::single(far);
+    few::pivot(simd, &mut tangent, &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
     let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
     // Who else is close enough to the boundary to stick out?
     let (center, limit) = near(&tangent, &bracket, spheres, origin);
     let mut near = lanes.beyond(simd, center, limit) & (u64::MAX >> (64 - spheres.len()));
-    for &index in tangent.support() {
-        near &= !(1 << index);
-    }
+    let [a, b, c, d] = tangent.padded();
+    near &= !((1 << a) | (1 << b) | (1 << c) | (1 << d));
     let before = bracket.high;
     while near != 0 {
         let mut four = [near.trailing_zeros() as usize; 4];
@@ -179,25 +184,33 @@ const IN_ORDER: [usize; 8 * LANES] = {
 #[inline(always)]
 fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
-    let Some((tangent, blocks)) = Blocks::support(simd, spheres, origin) else { return extreme(spheres) };
-    let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
-    let (center, limit) = near(&tangent, &bracket, spheres, origin);
-    let before = bracket.high;
-    let mut four = [tangent.support()[0]; 4];
-    let mut held = 0;
-    blocks.beyond(spheres, origin, center, limit, |index| {
-        four[held] = index;
-        held += 1;
-        if held == 4 {
+    let answer = many::support(
+        simd,
+        spheres,
+        origin,
+        #[inline(always)]
+        |tangent, blocks| {
+            let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
+            let (center, limit) = near(&tangent, &bracket, spheres, origin);
+            let before = bracket.high;
+            let mut four = [tangent.support()[0]; 4];
+            let mut held = 0;
+            blocks.beyond(simd, center, limit, |index| {
+                four[held] = index;
+                held += 1;
+                if held == 4 {
+                    bracket.enclose(simd, four.map(|index| &spheres[index]));
+                    held = 0;
+                }
+            });
             bracket.enclose(simd, four.map(|index| &spheres[index]));
-            held = 0;
-        }
-    });
-    bracket.enclose(simd, four.map(|index| &spheres[index]));
-    if bracket.high > before || !settled || doubtful(&bracket, bound) {
-        return refined(spheres, &tangent, &bracket, bound);
-    }
-    finish(spheres, &bracket, bound, tangent.support())
+            if bracket.high > before || !settled || doubtful(&bracket, bound) {
+                return refined(spheres, &tangent, &bracket, bound);
+            }
+            finish(spheres, &bracket, bound, tangent.support())
+        },
+    );
+    answer.unwrap_or_else(|| extreme(spheres))
 }
 
 /// The center of `tangent` less `origin`, and a limit: what reaches less far from there lies inside `bracket`.
@@ -220,6 +233,7 @@ fn doubtful(bracket: &Bracket, bound: f64) -> bool {
 #[cold]
 #[inline(never)]
 fn refined(spheres: &[Sphere], tangent: &Tangent<f64>, fast: &Bracket, fast_bound: f64) -> Option<Enclosing> {
+    decided(Stage::Refined);
     let (better, bracket, bound) = refine::refine(spheres, tangent.support());
     let bound = if fast_bound > bound { fast_bound } else { bound };
     if fast.high < bracket.high {
@@ -230,24 +244,27 @@ fn refined(spheres: &[Sphere], tangent: &Tangent<f64>, fast: &Bracket, fast_boun
 
 #[inline(always)]
 fn finish(spheres: &[Sphere], bracket: &Bracket, lower_bound: f64, support: &[usize]) -> Option<Enclosing> {
-    let radius = if bracket.low < bracket.high { certify::settle(bracket, spheres) } else { bracket.high };
+    let radius = if bracket.low < bracket.high {
+        decided(Stage::Integers);
+        certify::settle(bracket, spheres)
+    } else {
+        decided(Stage::DoubleDouble);
+        bracket.high
+    };
     let sphere = Sphere::new(bracket.center, radius)?;
     let (support, support_len) = sorted(support);
     Some(Enclosing { sphere, lower_bound, support, support_len })
 }
 
+/// The places in ascending order, the first one repeated, and how many there are. (A network of minima and maxima: the
+/// order cannot be foretold, so a branch would cost more.)
 fn sorted(support: &[usize]) -> ([usize; 4], usize) {
-    let mut sorted = [support[0]; 4];
-    for (place, &index) in support.iter().enumerate() {
-        sorted[place] = index;
-        let mut at = place;
-        while at > 0 && sorted[at - 1] > index {
-            sorted.swap(at - 1, at);
-            at -= 1;
-        }
-    }
-    sorted[support.len()..].fill(support[0]);
-    (sorted, support.len())
+    let at = |place: usize| support.get(place).copied().unwrap_or(usize::MAX);
+    let order = |a: usize, b: usize| (a.min(b), a.max(b));
+    let ((a, b), (c, d)) = (order(at(0), at(1)), order(at(2), at(3)));
+    let ((a, c), (b, d)) = (order(a, c), order(b, d));
+    let (b, c) = order(b, c);
+    ([a, b, c, d].map(|place| if place == usize::MAX { a } else { place }), support.len())
 }
 
 #[cfg(test)]
@@ -301,6 +318,52 @@ mod tests {
         assert_eq!(enclosing_sphere(&pair).unwrap().sphere, ball(0.0, 0.0, 0.0, 2.0));
         let five = [ball(3.0, 4.0, 0.0, 0.0), ball(-5.0, 0.0, 0.0, 0.0), ball(4.0, -3.0, 0.0, 0.0)];
         assert_eq!(enclosing_sphere(&five).unwrap().sphere.radius(), 5.0);
+    }
+
+    #[test]
+    fn every_stage_of_the_certificate_is_reached_and_decides() {
+        stage::decisions();
+        // A reach that is a double: only integers can tell that it is no more.
+        let exact = [ball(-1.0, 0.0, 0.0, 1.0), ball(1.0, 0.0, 0.0, 1.0)];
+        assert_eq!(enclosing_sphere(&exact).unwrap().sphere.radius(), 2.0);
+        assert_eq!(stage::decisions(), [0, 1, 0]);
+        // √(1 + 2⁻¹²⁰): only integers can tell that it is more than 1.
+        let tiny = (-60.0_f64).exp2();
+        let more = [ball(-1.0, -tiny, 0.0, 0.0), ball(1.0, tiny, 0.0, 0.0)];
+        assert_eq!(enclosing_sphere(&more).unwrap().sphere.radius(), 1.0_f64.next_up());
+        assert_eq!(stage::decisions(), [0, 1, 0]);
+        // The same with more spheres, by the other two paths.
+        for count in [10, 1000] {
+            for (pair, radius) in [(exact, 2.0), (more, 1.0_f64.next_up())] {
+                let mut set = vec![ball(0.0, 0.0, 0.0, 0.5); count];
+                set[1..3].copy_from_slice(&pair);
+                assert_eq!(enclosing_sphere(&set).unwrap().sphere.radius(), radius, "{count} {pair:?}");
+                let [_, integers, _] = stage::decisions();
+                assert_eq!(integers, 1, "{count} {pair:?}");
+            }
+        }
+        // An irrational radius.
+        let ordinary = [ball(0.0, 0.0, 0.0, 0.25), ball(1.0, 1.0, 0.0, 0.5), ball(0.0, 1.0, 2.0, 0.0)];
+        assert!(enclosing_sphere(&ordinary).is_some());
+        assert_eq!(stage::decisions(), [1, 0, 0]);
+        // Where a sphere touches a larger one from inside, but for rounding, the support is in doubt.
+        let mut state = 3_u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 * (-53.0_f64).exp2()
+        };
+        for _ in 0..1000 {
+            let (big, radius) = (DVec3::new(unit(), unit(), unit()), 0.5 * unit());
+            let mut set = vec![Sphere::new(big, 1.0).unwrap()];
+            for _ in 0..3 {
+                let way = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5).normalize();
+                let out = 10.0_f64.powf(-17.0 * unit());
+                set.push(Sphere::new(big + (1.0 - radius + out) * way, radius).unwrap());
+            }
+            assert!(enclosing_sphere(&set).is_some());
+        }
+        let [doubles, _, refined] = stage::decisions();
+        assert!(doubles > 900 && refined > 0, "{doubles} {refined}");
     }
 
     #[test]

@@ -2,18 +2,19 @@
 //!
 //! The minimal sphere of the children's supports is a lower bound for the node's and nearly always is it. A query for
 //! the farthest leaf verifies it: a subtree whose own sphere lies inside is skipped whole. A leaf that sticks out
-//! joins the candidates, and the node is solved again.
+//! joins the support, and the query is repeated.
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::{Level, Simd, f64x8, prelude::*};
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::basis::Tangent;
 use super::certify::U;
 use super::few::pivot;
-use super::lanes::{LANES, Lanes};
-use super::{ORDINARY, by_level, enclosing_sphere};
+use super::lanes::{LANES, Lanes, columns, measure};
+use super::{ORDINARY, ORDINARY_SQUARES, by_level, enclosing_sphere};
 use crate::Sphere;
 
 /// A node of a tree over spheres in leaf order.
@@ -29,59 +30,133 @@ pub(crate) struct Node {
 /// relative excess of 10⁻¹⁴ over what the rounding of the center to doubles costs; `None` where no finite double sphere
 /// encloses.
 ///
-/// Children are listed before their parents.
+/// Children are listed before their parents, and all that is below a node in one piece. Works in parallel on rayon's
+/// current pool; the answer does not depend on the number of threads.
+///
+/// # Panics
+/// With 2^32 leaves or more.
 pub(crate) fn enclosing_nodes(leaves: &[Sphere], nodes: &[Node]) -> Vec<Option<Sphere>> {
-    by_level!(Level::new(), simd => all(simd, leaves, nodes))
+    // Where what is below a node begins; the node itself if nothing is.
+    let mut start: Vec<usize> = Vec::with_capacity(nodes.len());
+    let mut roots = vec![true; nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        roots[node.children.clone()].fill(false);
+        start.push(start[node.children.clone()].iter().fold(index, |least, &start| least.min(start)));
+    }
+    // Pieces for one thread each, so small that they stay in its cache; and what is above them.
+    let mut pieces: Vec<Range<usize>> = Vec::new();
+    let mut above = Vec::new();
+    let mut open: Vec<usize> = (0..nodes.len()).filter(|&index| roots[index]).collect();
+    while let Some(index) = open.pop() {
+        above.push(index);
+        let children = nodes[index].children.clone();
+        if nodes[index].leaves.len() > PIECE {
+            open.extend(children);
+        } else if !children.is_empty() {
+            pieces.push(start[index]..children.end);
+        }
+    }
+    pieces.sort_unstable_by_key(|piece| piece.start);
+    above.sort_unstable();
+
+    let level = Level::new();
+    let mut found = vec![Found::NOTHING; nodes.len()];
+    let mut bounds: Vec<Sphere> = nodes.iter().map(|node| leaves[node.leaves.start]).collect();
+    let mut parts = Vec::with_capacity(pieces.len());
+    let (mut rest, mut at) = ((&mut found[..], &mut bounds[..]), 0);
+    for piece in pieces {
+        let found = rest.0.split_at_mut(piece.start - at).1.split_at_mut(piece.len());
+        let bounds = rest.1.split_at_mut(piece.start - at).1.split_at_mut(piece.len());
+        parts.push(Part { leaves, nodes, first: piece.start, found: found.0, bounds: bounds.0 });
+        (rest, at) = ((found.1, bounds.1), piece.end);
+    }
+    parts.into_par_iter().for_each(|mut part| part.solve(level, 0..part.found.len()));
+    Part { leaves, nodes, first: 0, found: &mut found, bounds: &mut bounds }.solve(level, above);
+    found.into_iter().map(|found| found.sphere).collect()
+}
+
+/// A sphere that counts as beyond any limit.
+fn everything(center: DVec3) -> Sphere {
+    Sphere::new(center, f64::MAX).expect("finite")
+}
+
+fn short(index: usize) -> u32 {
+    u32::try_from(index).expect("a tree has fewer than 2^32 leaves")
 }
 
 /// What is known of a finished node.
 #[derive(Clone, Copy)]
-struct Done {
+struct Found {
     sphere: Option<Sphere>,
     support: [u32; 4],
     support_len: u32,
 }
 
-#[inline(always)]
-fn all<S: Simd>(simd: S, leaves: &[Sphere], nodes: &[Node]) -> Vec<Option<Sphere>> {
-    let mut builder = Builder { leaves, nodes, done: Vec::with_capacity(nodes.len()), stack: Vec::new() };
-    for node in nodes {
-        let done = builder.node(simd, node);
-        builder.done.push(done);
+impl Found {
+    const NOTHING: Self = Self { sphere: None, support: [0; 4], support_len: 0 };
+
+    fn new(sphere: Option<Sphere>, support: &[usize]) -> Self {
+        let mut four = [0; 4];
+        for (place, &index) in four.iter_mut().zip(support) {
+            *place = short(index);
+        }
+        Self { sphere, support: four, support_len: short(support.len()) }
     }
-    builder.done.into_iter().map(|done| done.sphere).collect()
 }
 
-struct Builder<'a> {
+/// Nodes that lie together and what is known of them.
+struct Part<'a> {
     leaves: &'a [Sphere],
     nodes: &'a [Node],
-    done: Vec<Done>,
-    /// Nodes still to look at in a query.
-    stack: Vec<usize>,
+    /// The first node of this part.
+    first: usize,
+    found: &'a mut [Found],
+    /// The spheres of the finished nodes, without a gap.
+    bounds: &'a mut [Sphere],
 }
+
+/// Subtrees with at most so many leaves are the work of one thread.
+const PIECE: usize = 1 << 14;
 
 /// How many candidates a node may have.
 const MOST: usize = 8 * LANES;
 
-impl Builder<'_> {
-    #[inline(always)]
-    fn node<S: Simd>(&mut self, simd: S, node: &Node) -> Done {
+/// Nodes with at most so many leaves are solved over all of them.
+const SMALL: usize = 2 * LANES;
+
+impl Part<'_> {
+    /// Solves the nodes at some places of this part, children first.
+    fn solve(&mut self, level: Level, places: impl IntoIterator<Item = usize>) {
+        let mut stack = Vec::new();
+        for place in places {
+            let node = &self.nodes[self.first + place];
+            let found = by_level!(level, simd => self.node(simd, node, &mut stack));
+            let any = self.bounds[place].center();
+            self.bounds[place] = found.sphere.unwrap_or_else(|| everything(any));
+            self.found[place] = found;
+        }
+    }
+
+    fn node<S: Simd>(&self, simd: S, node: &Node, stack: &mut Vec<usize>) -> Found {
         let range = node.leaves.clone();
-        if let [a, b] = &self.leaves[range.clone()]
-            && let Some(sphere) = pair(a, b)
-        {
-            return done(Some(sphere), &[range.start, range.start + 1]);
+        match &self.leaves[range.clone()] {
+            [one] => return Found::new(Some(*one), &[range.start]),
+            [a, b] => {
+                if let Some(sphere) = pair(a, b) {
+                    return Found::new(Some(sphere), &[range.start, range.start + 1]);
+                }
+            }
+            _ => {}
         }
         let mut these = [range.start; MOST];
         let mut count = 0;
-        if range.len() <= LANES {
-            for index in range.clone() {
-                these[count] = index;
+        if range.len() <= SMALL || node.children.is_empty() {
+            for (slot, index) in these.iter_mut().zip(range.clone()) {
+                *slot = index;
                 count += 1;
             }
         } else {
-            for child in node.children.clone() {
-                let child = &self.done[child];
+            for child in &self.found[self.places(node)] {
                 for &index in &child.support[..child.support_len as usize] {
                     if count < MOST {
                         these[count] = index as usize;
@@ -90,48 +165,65 @@ impl Builder<'_> {
                 }
             }
         }
-        for _ in 0..MAX_ROUNDS {
-            if count == 0 {
-                break;
-            }
-            let tangent = if count <= LANES {
-                self.solve::<S, 1>(simd, &these[..count])
-            } else {
-                self.solve::<S, 8>(simd, &these[..count])
-            };
-            let Some((center, radius)) = tangent.as_ref().and_then(|tangent| self.sound(tangent)) else {
-                break;
-            };
-            let tangent = tangent.expect("it was sound");
-            let spacing = center.abs().max_element() * (4.0 * U);
-            let (far, reach) = self.farthest(node, center, radius);
-            if reach <= radius * (1.0 + 16.0 * U) + spacing {
-                let sphere = Sphere::new(center, reach * (1.0 + 16.0 * U));
-                return done(sphere, tangent.support());
-            }
-            if count == MOST || these[..count].contains(&far) {
-                break;
-            }
-            these[count] = far;
-            count += 1;
-        }
-        self.whole(range)
+        let these = &these[..count];
+        let found = if count <= LANES {
+            self.climb::<S, 1>(simd, node, these, stack)
+        } else if count <= 2 * LANES {
+            self.climb::<S, 2>(simd, node, these, stack)
+        } else {
+            self.climb::<S, 8>(simd, node, these, stack)
+        };
+        found.unwrap_or_else(|| self.whole(range))
     }
 
-    /// The minimal sphere of a few leaves; `None` if it is out of the ordinary range.
+    /// The places of the children in this part.
     #[inline(always)]
-    fn solve<S: Simd, const VECTORS: usize>(&self, simd: S, these: &[usize]) -> Option<Tangent<f64>> {
-        let origin = self.leaves[these[0]].center();
-        let lanes = Lanes::<S, VECTORS>::new(simd, these.iter().map(|&index| &self.leaves[index]), origin);
-        let (far, reach) = lanes.farthest_from_origin(simd);
-        if !ORDINARY.contains(&reach) {
+    fn places(&self, node: &Node) -> Range<usize> {
+        node.children.start - self.first..node.children.end - self.first
+    }
+
+    /// From the minimal sphere of some leaves to that of all below the node; `None` if it is out of the ordinary.
+    fn climb<S: Simd, const VECTORS: usize>(
+        &self,
+        simd: S,
+        node: &Node,
+        these: &[usize],
+        stack: &mut Vec<usize>,
+    ) -> Option<Found> {
+        let origin = self.leaves[*these.first()?].center();
+        let (lanes, far, square) = simd.vectorize(
+            #[inline(always)]
+            || {
+                let listed = these.iter().map(|&index| &self.leaves[index]);
+                let lanes = Lanes::<S, VECTORS>::new(simd, listed, origin);
+                let (far, square) = lanes.farthest_from_origin(simd);
+                (lanes, far, square)
+            },
+        );
+        if !ORDINARY_SQUARES.contains(&square) {
             return None;
         }
-        Some(pivot(simd, &Tangent::single(these[far]), &lanes, these, self.leaves, origin))
+        let mut tangent = Tangent::single(these[far]);
+        for _ in 0..MAX_ROUNDS {
+            pivot(simd, &mut tangent, &lanes, these, self.leaves, origin);
+            let (center, radius) = self.sound(&tangent)?;
+            let spacing = center.abs().max_element() * (4.0 * U);
+            let (far, reach) = self.farthest(simd, node, center, radius, stack);
+            if reach <= radius * (1.0 + 16.0 * U) + spacing {
+                let sphere = Sphere::new(center, reach * (1.0 + 16.0 * U));
+                return Some(Found::new(sphere, tangent.support()));
+            }
+            if tangent.has(far) {
+                return None;
+            }
+            tangent.add(far, self.leaves);
+        }
+        None
     }
 
     /// The center, rounded, and the largest reach of the support from it, if the support is balanced: then the sphere is
     /// minimal up to a few units in the last place.
+    #[inline(always)]
     fn sound(&self, tangent: &Tangent<f64>) -> Option<(DVec3, f64)> {
         let (center, radius) = tangent.sphere(self.leaves, DVec3::ZERO);
         let center = DVec3::from(center);
@@ -157,52 +249,81 @@ impl Builder<'_> {
 
     /// The leaf below `node` that reaches farthest from `center`, if one reaches farther than `radius`, and how far; else
     /// any leaf, and `radius`.
-    fn farthest(&mut self, node: &Node, center: DVec3, radius: f64) -> (usize, f64) {
+    fn farthest<S: Simd>(
+        &self,
+        simd: S,
+        node: &Node,
+        center: DVec3,
+        radius: f64,
+        stack: &mut Vec<usize>,
+    ) -> (usize, f64) {
         let mut best = (node.leaves.start, radius);
-        let reach = |sphere: &Sphere| (sphere.center() - center).length() + sphere.radius();
-        let look = |leaves: &[Sphere], range: Range<usize>, best: &mut (usize, f64)| {
-            for index in range {
-                let reach = reach(&leaves[index]);
-                if reach > best.1 {
-                    *best = (index, reach);
+        let mut node = node;
+        stack.clear();
+        loop {
+            let leaves = node.leaves.len() <= SMALL || node.children.is_empty();
+            let (spheres, first) = if leaves {
+                (&self.leaves[node.leaves.clone()], node.leaves.start)
+            } else {
+                (&self.bounds[self.places(node)], node.children.start)
+            };
+            let limit = best.1 * (1.0 - 16.0 * U);
+            for (block, some) in spheres.chunks(MOST).enumerate() {
+                let mut out = beyond(simd, some, center, limit);
+                while out != 0 {
+                    let at = out.trailing_zeros() as usize;
+                    if leaves {
+                        let reach = (some[at].center() - center).length() + some[at].radius();
+                        if reach > best.1 {
+                            best = (first + block * MOST + at, reach);
+                        }
+                    } else {
+                        stack.push(first + block * MOST + at);
+                    }
+                    out &= out - 1;
                 }
             }
-        };
-        if node.children.is_empty() || node.leaves.len() <= LANES {
-            look(self.leaves, node.leaves.clone(), &mut best);
-            return best;
+            let Some(next) = stack.pop() else { return best };
+            node = &self.nodes[next];
         }
-        self.stack.clear();
-        self.stack.extend(node.children.clone());
-        while let Some(index) = self.stack.pop() {
-            let below = &self.nodes[index];
-            if let Some(sphere) = self.done[index].sphere
-                && reach(&sphere) <= best.1
-            {
-                continue;
-            }
-            if below.children.is_empty() || below.leaves.len() <= LANES {
-                look(self.leaves, below.leaves.clone(), &mut best);
-            } else {
-                self.stack.extend(below.children.clone());
-            }
-        }
-        best
     }
 
     /// The careful way.
     #[cold]
     #[inline(never)]
-    fn whole(&self, range: Range<usize>) -> Done {
+    fn whole(&self, range: Range<usize>) -> Found {
         let Some(answer) = enclosing_sphere(&self.leaves[range.clone()]) else {
-            return done(None, &[range.start]);
+            return Found::new(None, &[range.start]);
         };
         let mut support = [range.start; 4];
         for (place, &index) in support.iter_mut().zip(answer.support()) {
             *place += index;
         }
-        done(Some(answer.sphere), &support[..answer.support().len()])
+        Found::new(Some(answer.sphere), &support[..answer.support().len()])
     }
+}
+
+/// Which of up to 64 spheres may reach farther than `limit` from `center`, as bits.
+#[inline(never)]
+fn beyond<S: Simd>(simd: S, spheres: &[Sphere], center: DVec3, limit: f64) -> u64 {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let (eights, rest) = spheres.as_chunks::<LANES>();
+            let mut found = 0;
+            for (block, eight) in eights.iter().enumerate() {
+                let measure = measure(simd, &columns(simd, eight.each_ref(), center), [0.0; 3], limit);
+                found |= measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask() << (block * LANES);
+            }
+            if let Some(first) = rest.first() {
+                let eight = std::array::from_fn(|i| rest.get(i).unwrap_or(first));
+                let measure = measure(simd, &columns(simd, eight, center), [0.0; 3], limit);
+                found |= measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask() << (eights.len() * LANES);
+            }
+            // (A lane beyond the end stands for the first of its eight.)
+            found & (u64::MAX >> (MOST - spheres.len()))
+        },
+    )
 }
 
 /// No node known needs more than a few rounds.
@@ -223,50 +344,25 @@ fn pair(a: &Sphere, b: &Sphere) -> Option<Sphere> {
     if good { Sphere::new(center, most * (1.0 + 16.0 * U)) } else { None }
 }
 
-fn done(sphere: Option<Sphere>, support: &[usize]) -> Done {
-    let mut four = [0; 4];
-    for (place, &index) in four.iter_mut().zip(support) {
-        *place = u32::try_from(index).expect("a tree has fewer than 2^32 leaves");
-    }
-    Done { sphere, support: four, support_len: u32::try_from(support.len()).expect("at most four") }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::certify::contains_exactly;
     use super::*;
 
-    /// Lists the nodes of the tree that cuts a range into `ways` parts, children first; returns the last one's place.
-    fn cut(range: Range<usize>, ways: usize, smallest: usize, nodes: &mut Vec<Node>) {
-        let mut level = vec![range];
-        let mut levels = Vec::new();
-        while !level.is_empty() {
-            let mut next = Vec::new();
-            let mut made = Vec::new();
-            for range in level {
-                let from = next.len();
-                if range.len() > smallest {
-                    let parts = ways.min(range.len());
-                    for part in 0..parts {
-                        let at = |part: usize| range.start + range.len() * part / parts;
-                        next.push(at(part)..at(part + 1));
-                    }
-                }
-                made.push((range, from..next.len()));
-            }
-            levels.push(made);
-            level = next;
+    /// Lists what is below the node with this range in the tree that cuts ranges into `ways` parts, down to those of at
+    /// most `smallest` leaves; returns its children's places.
+    fn cut(range: Range<usize>, ways: usize, smallest: usize, nodes: &mut Vec<Node>) -> Range<usize> {
+        if range.len() <= smallest {
+            return 0..0;
         }
-        let mut start = 0;
-        for made in levels.into_iter().rev() {
-            let below = start;
-            start = nodes.len();
-            for (leaves, children) in made {
-                let children =
-                    if children.is_empty() { 0..0 } else { below + children.start..below + children.end };
-                nodes.push(Node { leaves, children });
-            }
-        }
+        let parts = ways.min(range.len());
+        let at = |part: usize| range.start + range.len() * part / parts;
+        let parts: Vec<Range<usize>> = (0..parts).map(|part| at(part)..at(part + 1)).collect();
+        let below: Vec<Range<usize>> =
+            parts.iter().map(|part| cut(part.clone(), ways, smallest, nodes)).collect();
+        let start = nodes.len();
+        nodes.extend(parts.into_iter().zip(below).map(|(leaves, children)| Node { leaves, children }));
+        start..nodes.len()
     }
 
     fn leaves(count: usize, kind: usize) -> Vec<Sphere> {
@@ -294,7 +390,8 @@ mod tests {
             for (ways, smallest) in [(2, 1), (3, 2), (16, 16), (16, 1)] {
                 let leaves = leaves(1000, kind);
                 let mut nodes = Vec::new();
-                cut(0..leaves.len(), ways, smallest, &mut nodes);
+                let children = cut(0..leaves.len(), ways, smallest, &mut nodes);
+                nodes.push(Node { leaves: 0..leaves.len(), children });
                 let spheres = enclosing_nodes(&leaves, &nodes);
                 assert_eq!(spheres.len(), nodes.len());
                 for (node, sphere) in nodes.iter().zip(spheres) {

@@ -17,6 +17,8 @@ use std::ops::Range;
 use glam::Vec4;
 
 use super::node::{Child, Kind, Node, WIDTH};
+use crate::Sphere;
+use crate::enclosing::nodes::{self, enclosing_nodes};
 
 /// A primitive's box. `low.w` carries the primitive's index as bits; no arithmetic uses that lane's value.
 #[derive(Clone, Copy, Debug)]
@@ -468,4 +470,32 @@ impl Collapse<'_> {
         }
         if j == 0 { parts.push((at, leaves)) } else { self.share(at, leaves, j, parts) }
     }
+}
+
+/// The minimal spheres of the children of nodes that [`collapse`] appended from `first` on; `None` for an unused lane and
+/// where no finite sphere encloses. There are `per_block` spheres to a leaf block; the last block may have fewer.
+pub(super) fn minimal_spheres(
+    nodes: &[Node],
+    first: usize,
+    spans: &[Spans],
+    spheres: &[Sphere],
+    per_block: usize,
+) -> Vec<[Option<Sphere>; WIDTH]> {
+    // Children first: parents come first in `nodes`.
+    let mut list = Vec::new();
+    let mut lists = vec![0..0; spans.len()];
+    for (at, spans) in spans.iter().enumerate().rev() {
+        let start = list.len();
+        for (child, blocks) in nodes[first + at].children().iter().zip(spans) {
+            let children =
+                if child.kind() == Kind::Inner { lists[child.index() - first].clone() } else { 0..0 };
+            let leaves = blocks.start * per_block..spheres.len().min(blocks.end * per_block);
+            list.push(nodes::Node { leaves, children });
+        }
+        lists[at] = start..list.len();
+    }
+    let found = enclosing_nodes(spheres, &list);
+    let of =
+        |list: Range<usize>| std::array::from_fn(|lane| found[list.clone()].get(lane).copied().flatten());
+    lists.into_iter().map(of).collect()
 }

@@ -17,7 +17,7 @@ pub use walk::Visits;
 
 use crate::{Ray, Sphere, Triangle, enclosing_sphere};
 use batch::fly;
-use build::{Branch, Item, Part, Spans};
+use build::{Branch, Item, Part};
 use node::{Balls, Boxes, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH, down, up};
 use walk::{cast, is_open};
 
@@ -128,15 +128,11 @@ impl SphereTree {
             block
         });
         let triangle_blocks = triangle_blocks.collect();
-        let (sphere_spans, triangle_spans) =
-            spans.split_at(first_triangle_node.max(if triangles.is_empty() { spans.len() } else { 0 }));
-        let mut minimal: Vec<[Option<Sphere>; WIDTH]> = sphere_spans
-            .par_iter()
-            .map(|spans| each_lane(spans, spheres.len(), |places| minimal_sphere_of(&spheres[places])))
-            .collect();
-        minimal.par_extend(triangle_spans.par_iter().map(|spans| {
-            each_lane(spans, triangles.len(), |places| minimal_sphere_of(&corners(&triangles[places])))
-        }));
+        let first_triangle_node = if triangles.is_empty() { nodes.len() } else { first_triangle_node };
+        let below = &spans[..first_triangle_node];
+        let mut minimal = build::minimal_spheres(&nodes, 0, below, &spheres, WIDTH);
+        let (below, vertices) = (&spans[first_triangle_node..], corners(&triangles));
+        minimal.extend(build::minimal_spheres(&nodes, first_triangle_node, below, &vertices, 3 * WIDTH));
         let (root, stack) = match parts[..] {
             [] => (None, 0),
             [(part, _)] => (Some(part.child), part.stack),
@@ -149,7 +145,7 @@ impl SphereTree {
                 nodes.push(join);
                 let mut spheres_of_join = [None; WIDTH];
                 spheres_of_join[0] = minimal_sphere_of(&spheres);
-                spheres_of_join[1] = minimal_sphere_of(&corners(&triangles));
+                spheres_of_join[1] = minimal_sphere_of(&vertices);
                 minimal.push(spheres_of_join);
                 let stack = parts.iter().map(|(part, _)| part.stack).max().unwrap_or(0);
                 (Some(Child::new(Kind::Inner, nodes.len() - 1)), stack + parts.len())
@@ -300,18 +296,6 @@ impl SphereTree {
     fn fly(&self, rays: &[Ray], within: &Range<f64>, any: bool, answer: &mut dyn FnMut(usize, Option<Hit>)) {
         dispatch!(self.level, simd => fly(simd, self, rays, within, any, answer));
     }
-}
-
-/// Applies `f` to the places that each span of leaf blocks covers; `None` for an unused lane.
-fn each_lane(
-    spans: &Spans,
-    len: usize,
-    f: impl Fn(Range<usize>) -> Option<Sphere>,
-) -> [Option<Sphere>; WIDTH] {
-    std::array::from_fn(|lane| {
-        let Range { start, end } = spans[lane];
-        (start < end).then(|| f(start * WIDTH..len.min(end * WIDTH))).flatten()
-    })
 }
 
 /// A sphere around everything, minimal for spheres alone.
