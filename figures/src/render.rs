@@ -13,7 +13,7 @@ use rt_shade::color::{clamp, interpolate, to_sample};
 use rt_shade::{PointLight, phong, texture_uv};
 
 use crate::camera::{Size, View};
-use crate::scene::{Filter, Look, Paint, Scene};
+use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
 
 /// The side of a tile in pixels: its rays are close enough together to visit the same nodes of the tree.
 const TILE: u32 = 8;
@@ -27,6 +27,7 @@ pub struct Renderer {
     background: DVec3,
     lights: Vec<PointLight>,
     looks: Vec<Look>,
+    colors: Vec<DVec3>,
     sphere_looks: Vec<u32>,
     triangle_looks: Vec<u32>,
     vertex_colors: Vec<Option<[DVec3; 3]>>,
@@ -47,10 +48,10 @@ pub struct Rows {
 impl Renderer {
     /// Builds the tree over the scene's objects.
     pub fn new(scene: Scene) -> Self {
-        let Scene { background, lights, looks, spheres, triangles, .. } = scene;
+        let Scene { background, lights, looks, colors, spheres, triangles, .. } = scene;
         let Scene { sphere_looks, triangle_looks, vertex_colors, .. } = scene;
         let tree = SphereTree::new(spheres, triangles);
-        Self { background, lights, looks, sphere_looks, triangle_looks, vertex_colors, tree }
+        Self { background, lights, looks, colors, sphere_looks, triangle_looks, vertex_colors, tree }
     }
 
     /// Draws the given rows of a picture, samples in `0..=maxval`.
@@ -95,20 +96,17 @@ impl Renderer {
         let point = ray.at(t);
         match self.tree.shape(index) {
             Shape::Sphere(sphere) => {
-                let look = &self.looks[self.sphere_looks[index] as usize];
                 // A sphere of radius 0 faces whoever looks at it.
                 let normal = if sphere.radius() > 0.0 { sphere.normal(point) } else { -ray.direction() };
-                let surface = match &look.paint {
-                    Paint::Color(color) => *color,
-                    Paint::Image { texture, mirrored, filter } => {
-                        let (u, v) = texture_uv(normal, *mirrored);
-                        match filter {
-                            Filter::Nearest => texture.nearest(u, v),
-                            Filter::Bilinear => texture.bilinear(u, v),
-                        }
+                let look = self.sphere_looks[index];
+                let (surface, material) = match look.checked_sub(COLOR) {
+                    Some(position) => (self.colors[position as usize], &DEFAULT_MATERIAL),
+                    None => {
+                        let Look { paint, material } = &self.looks[look as usize];
+                        (paint_at(paint, normal), material)
                     }
                 };
-                phong(point, ray.direction(), normal, surface, &look.material, &self.lights)
+                phong(point, ray.direction(), normal, surface, material, &self.lights)
             }
             Shape::Triangle(triangle) => {
                 let index = index - self.sphere_looks.len();
@@ -123,6 +121,20 @@ impl Renderer {
                 };
                 let normal = triangle.normal().unwrap_or(-ray.direction());
                 phong(point, ray.direction(), normal, surface, &look.material, &self.lights)
+            }
+        }
+    }
+}
+
+/// The colour of a sphere where its outward normal is `normal`.
+fn paint_at(paint: &Paint, normal: DVec3) -> DVec3 {
+    match paint {
+        Paint::Color(color) => *color,
+        Paint::Image { texture, mirrored, filter } => {
+            let (u, v) = texture_uv(normal, *mirrored);
+            match filter {
+                Filter::Nearest => texture.nearest(u, v),
+                Filter::Bilinear => texture.bilinear(u, v),
             }
         }
     }

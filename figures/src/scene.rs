@@ -26,7 +26,11 @@ pub struct Scene {
     pub looks: Vec<Look>,
     /// The spheres.
     pub spheres: Vec<Sphere>,
-    /// For each sphere, the position of its look in `looks`.
+    /// The colours of spheres that came with nothing else; their material is [`DEFAULT_MATERIAL`].
+    ///
+    /// A file may give each of its spheres a colour of its own: here it takes 24 bytes, in `looks` four times that.
+    pub colors: Vec<DVec3>,
+    /// For each sphere, the position of its look in `looks`, or [`COLOR`] and the position of its colour in `colors`.
     pub sphere_looks: Vec<u32>,
     /// The triangles; each has an area.
     pub triangles: Vec<Triangle>,
@@ -47,6 +51,7 @@ impl Scene {
             background: DVec3::ZERO,
             lights: Vec::new(),
             looks: Vec::new(),
+            colors: Vec::new(),
             spheres: Vec::new(),
             sphere_looks: Vec::new(),
             triangles: Vec::new(),
@@ -75,20 +80,32 @@ impl Scene {
         assert_eq!(self.triangle_looks.len(), self.triangles.len());
         assert!(self.vertex_colors.is_empty() || self.vertex_colors.len() == self.triangles.len());
         let known = |look: &u32| (*look as usize) < self.looks.len();
-        assert!(self.sphere_looks.iter().all(known) && self.triangle_looks.iter().all(known));
+        let paint = |look: &u32| look.checked_sub(COLOR).is_some_and(|at| (at as usize) < self.colors.len());
+        assert!(self.sphere_looks.iter().all(|look| known(look) || paint(look)));
+        assert!(self.triangle_looks.iter().all(known));
         assert!(!self.triangles.iter().any(Triangle::is_degenerate));
     }
 
     /// Adds spheres from a bulk file: all with the look at this position, or each in its own colour.
-    pub fn add_spheres(&mut self, found: Spheres, look: Option<u32>) {
+    ///
+    /// # Errors
+    /// More colours than can be numbered; the spheres are not added then.
+    pub fn add_spheres(&mut self, found: Spheres, look: Option<u32>) -> Result<(), TooManyColors> {
         let Spheres { spheres, mut color_indices, colors } = found;
         match look {
             Some(look) => color_indices.fill(look),
             None => {
-                // Positions of looks fit 32 bits, or there would be more of them than memory holds.
-                let first = u32::try_from(self.looks.len()).unwrap_or(u32::MAX);
-                self.looks.extend(colors.into_iter().map(Look::colored));
-                color_indices.iter_mut().for_each(|index| *index = index.saturating_add(first));
+                let first = self.colors.len();
+                if first + colors.len() > COLOR as usize {
+                    return Err(TooManyColors);
+                }
+                let first = COLOR + u32::try_from(first).expect("it is at most COLOR");
+                if self.colors.is_empty() {
+                    self.colors = colors;
+                } else {
+                    self.colors.extend(colors);
+                }
+                color_indices.iter_mut().for_each(|index| *index += first);
             }
         }
         if self.spheres.is_empty() {
@@ -97,6 +114,7 @@ impl Scene {
             self.spheres.extend(spheres);
             self.sphere_looks.extend(color_indices);
         }
+        Ok(())
     }
 
     /// Adds a mesh from the file at `path`, with the look at this position.
@@ -134,7 +152,7 @@ impl Scene {
     /// Returns a number that two different scenes hardly ever share: it tells tiles of one picture from another's.
     pub fn fingerprint(&self) -> u64 {
         let mut sum = Sum(0);
-        let Self { camera, background, lights, looks, spheres, sphere_looks, .. } = self;
+        let Self { camera, background, lights, looks, colors, spheres, sphere_looks, .. } = self;
         let Self { triangles, triangle_looks, vertex_colors, .. } = self;
         // Shortest decimals tell doubles apart; what there is a lot of goes by its bits.
         sum.text(&format!("{camera:?} {background:?} {lights:?}"));
@@ -154,6 +172,7 @@ impl Scene {
                 }
             }
         }
+        colors.iter().for_each(|color| sum.vector(*color));
         sum.word(spheres.len() as u64);
         for (sphere, look) in spheres.iter().zip(sphere_looks) {
             sum.vector(sphere.center());
@@ -189,6 +208,14 @@ impl Scene {
         Some(View::new(camera, size))
     }
 }
+
+/// The mark of a colour among a scene's looks: positions from here on count colours, those below looks.
+pub const COLOR: u32 = 1 << 31;
+
+/// A scene's spheres have more colours than can be numbered.
+#[derive(Debug, thiserror::Error)]
+#[error("more than {COLOR} colors; give the spheres a material")]
+pub struct TooManyColors;
 
 /// A running sum of 64 bits: each word is turned into it and stirred by a large odd number.
 struct Sum(u64);

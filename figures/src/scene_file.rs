@@ -21,7 +21,7 @@ use toml::Spanned;
 use crate::camera::Camera;
 use crate::figure::asset;
 use crate::import::{obj, xyz};
-use crate::scene::{DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
+use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene, TooManyColors};
 use crate::texture_file;
 
 /// The largest scene file that is read. More spheres than fit belong into a bulk file.
@@ -80,8 +80,11 @@ enum Problem {
     Mesh(obj::ObjError),
     #[error("no objects; add a [[sphere]], [[spheres]], [[triangle]] or [[mesh]]")]
     Empty,
-    #[error("more than {} materials", u32::MAX)]
+    #[error("more than {COLOR} materials")]
     TooManyLooks,
+    /// Files with more colours than can be numbered.
+    #[error(transparent)]
+    TooManyColors(TooManyColors),
 }
 
 // The tables of the format, one to one.
@@ -431,8 +434,10 @@ impl Checker<'_> {
             colored: look.is_none(),
         };
         let found = xyz::load(&self.path(file)?, options);
-        scene.add_spheres(found.map_err(|error| self.refuse(file.span(), Problem::Spheres(error)))?, look);
-        Ok(())
+        let found = found.map_err(|error| self.refuse(file.span(), Problem::Spheres(error)))?;
+        scene
+            .add_spheres(found, look)
+            .map_err(|error| self.refuse(file.span(), Problem::TooManyColors(error)))
     }
 
     fn triangle(
@@ -500,7 +505,8 @@ impl Checker<'_> {
         span: Range<usize>,
         look: impl FnOnce(&Self) -> Result<Look, SceneError>,
     ) -> Result<u32, SceneError> {
-        let position = u32::try_from(looks.len()).map_err(|_| self.refuse(span, Problem::TooManyLooks))?;
+        let position = u32::try_from(looks.len()).ok().filter(|&position| position < COLOR);
+        let position = position.ok_or_else(|| self.refuse(span, Problem::TooManyLooks))?;
         looks.push(look(self)?);
         Ok(position)
     }
