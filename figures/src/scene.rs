@@ -95,11 +95,12 @@ impl Scene {
         match look {
             Some(look) => color_indices.fill(look),
             None => {
-                let first = self.colors.len();
-                if first + colors.len() > COLOR as usize {
+                let last = u32::try_from(self.colors.len() + colors.len()).map_err(|_| TooManyColors)?;
+                if last > COLOR {
                     return Err(TooManyColors);
                 }
-                let first = COLOR + u32::try_from(first).expect("it is at most COLOR");
+                // No more than `last`, which fits.
+                let first = COLOR + u32::try_from(self.colors.len()).unwrap_or(last);
                 if self.colors.is_empty() {
                     self.colors = colors;
                 } else {

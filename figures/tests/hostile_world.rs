@@ -57,8 +57,8 @@ fn two_hundred_kills_leave_the_old_or_the_new_picture_whole() {
         wholes.push(fs::read(images.path().join(format!("{name}-whole.ppm"))).unwrap());
     }
     assert!(wholes[0] != wholes[1]);
-    let convert = |kill: u64| {
-        let name = ["a", "b"][kill as usize % 2];
+    let convert = |kill: u32| {
+        let name = if kill.is_multiple_of(2) { "a" } else { "b" };
         let picture = images.path().join(name).with_extension("ppm");
         format!("convert {} picture.ppm --format ppm-plain", picture.display())
     };
@@ -81,11 +81,11 @@ fn two_hundred_kills_leave_the_old_or_the_new_picture_whole() {
     let life = (0..4).map(life).max().unwrap();
 
     let (mut alive, mut inside, mut renewed) = (0, 0, 0);
-    for kill in 0..200_u64 {
+    for kill in 0..200 {
         let before = (version(), stale());
         let mut child = command(PROGRAM, folder.path(), &convert(kill)).spawn().unwrap();
         // Steps of the golden ratio fill the time evenly, and have no common rhythm with the alternating pictures.
-        let moment = (kill as f64 * 0.618_033_988_749_895).fract();
+        let moment = (f64::from(kill) * 0.618_033_988_749_895).fract();
         sleep(life.mul_f64(1.05 * moment));
         child.kill().unwrap();
         let status = child.wait().unwrap();

@@ -114,19 +114,19 @@ mod tests {
     #[test]
     fn a_short_decimal_is_the_nearest_double() {
         let mut bits = 7_u64;
-        let mut next = |below: u64| {
+        let mut next = |below: u32| {
             bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (bits >> 33) % below
+            usize::try_from((bits >> 33) % u64::from(below)).unwrap()
         };
         let mut short = 0;
         for _ in 0..100_000 {
-            let mut word = ["", "-", "+"][next(3) as usize].to_owned();
+            let mut word = ["", "-", "+"][next(3)].to_owned();
             let (digits, point) = (1 + next(17), next(20));
             for at in 0..digits {
                 if at == point {
                     word.push('.');
                 }
-                word.push(char::from(b"0123456789"[next(10) as usize]));
+                word.push(char::from(b"0123456789"[next(10)]));
             }
             let expected: f64 = word.parse().unwrap();
             assert_eq!(number(word.as_bytes()).unwrap().to_bits(), expected.to_bits(), "{word}");
