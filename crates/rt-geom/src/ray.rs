@@ -9,12 +9,15 @@ use glam::DVec3;
 ///
 /// The direction need not be a unit vector: `t` counts in units of it, and nothing normalises it behind the
 /// caller's back, because that would move the ray.
+// In an order in which no pair of coordinates straddles two pairs that are written together: reading such a pair soon
+// after would wait for the memory.
 #[derive(Clone, Copy)]
+#[repr(C)]
 pub struct Ray {
     origin: DVec3,
-    direction: DVec3,
     // What every shape's test needs of the direction, once for all of them.
     reach: f64,
+    direction: DVec3,
     square: f64,
     inverse_square: f64,
 }
@@ -24,12 +27,16 @@ impl Ray {
     #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Self> {
         const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
-        let valid = origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO;
         let reach = max_abs(direction);
-        let regular = (1.0 / LONGEST..=LONGEST).contains(&reach);
-        let square = if regular { direction.length_squared() } else { f64::NAN };
-        let reach = if regular { reach } else { f64::NAN };
-        valid.then_some(Self { origin, direction, reach, square, inverse_square: 1.0 / square })
+        let square = direction.length_squared();
+        // NaN if a component is, and then no comparison holds.
+        let far = (origin.x.abs() + origin.y.abs() + origin.z.abs()) + square;
+        let ordinary = (1.0 / LONGEST..=LONGEST).contains(&reach) && far < f64::INFINITY;
+        if !ordinary && !is_valid(origin, direction) {
+            return None;
+        }
+        let (reach, square) = if ordinary { (reach, square) } else { (f64::NAN, f64::NAN) };
+        Some(Self { origin, direction, reach, square, inverse_square: 1.0 / square })
     }
 
     /// Where the ray starts; finite.
@@ -56,8 +63,9 @@ impl Ray {
 
     /// The largest component of the direction in magnitude.
     ///
-    /// The filters are proved for directions where this lies between 2^-100 and 2^100. For any other direction this and
-    /// the squares are NaN: every comparison with an error bound then fails, and the exact path decides.
+    /// The filters are proved for directions where this lies between 2^-100 and 2^100. For any other direction, and for an
+    /// origin whose coordinates add up to infinity, this and the squares are NaN: every comparison with an error bound then
+    /// fails, and the exact path decides.
     #[inline(always)]
     pub(crate) fn reach(&self) -> f64 {
         self.reach
@@ -74,6 +82,11 @@ impl Ray {
     pub(crate) fn inverse_square(&self) -> f64 {
         self.inverse_square
     }
+}
+
+#[inline(always)]
+fn is_valid(origin: DVec3, direction: DVec3) -> bool {
+    origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO
 }
 
 /// Rays are equal if their origins and directions are.

@@ -171,8 +171,8 @@ impl Sphere {
     /// Returns bounds of the closest hit's `t`, or `None` if nothing in the range is hit or the hit surely lies
     /// beyond `limit`.
     #[inline(always)]
-    pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line::<false>(prepared.ray) {
+    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+        match self.line::<FMA>(prepared.ray) {
             Line::Misses => None,
             Line::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
@@ -254,7 +254,7 @@ struct Approximation {
     far: f64,
     /// A bound of the error of both, and of the rounding when it is added to them or subtracted.
     error: f64,
-    /// `1 / sqrt(Delta)`
+    /// `1 / sqrt(Delta)`, rounded three times
     inverse_root: f64,
 }
 
@@ -262,7 +262,8 @@ impl Crossing {
     #[inline(always)]
     fn approximation(&self) -> Approximation {
         let root = self.delta.sqrt();
-        let inverse_root = 1.0 / root;
+        // So the division need not wait for the root.
+        let inverse_root = root * (1.0 / self.delta);
         Approximation {
             near: (-self.b - root) * self.inverse_a,
             far: (root - self.b) * self.inverse_a,

@@ -129,7 +129,7 @@ impl Triangle {
             }
             return exact::closest(self, ray, within).is_some();
         }
-        self.candidate(&PreparedRay::new(ray, within), f64::INFINITY).is_some()
+        self.candidate::<false>(&PreparedRay::new(ray, within), f64::INFINITY).is_some()
     }
 
     /// Returns how the ray, from its origin on, meets the triangle, exactly.
@@ -232,8 +232,8 @@ impl Triangle {
     /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
     /// `limit`.
     #[inline(always)]
-    pub(crate) fn candidate(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line::<false>(prepared.ray) {
+    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+        match self.line::<FMA>(prepared.ray) {
             Line::Misses => None,
             Line::Hits(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
                 self.exact_candidate(prepared.ray, prepared.within(), limit)

@@ -165,7 +165,7 @@ mod tests {
         for i in 0..4096 {
             let (sphere, ray) = case(state, i);
             let whole = PreparedRay::new(&ray, 0.0..f64::INFINITY);
-            let bounds = sphere.candidate(&whole, f64::INFINITY).unwrap();
+            let bounds = sphere.candidate::<true>(&whole, f64::INFINITY).unwrap();
             let Roots::Two(near, _) = exact::roots(&sphere, &ray) else { panic!("{sphere:?} {ray:?}") };
             assert!(bounds.low <= near && near <= bounds.high, "{sphere:?} {ray:?} {bounds:?} {near}");
             assert!(bounds.low < bounds.high);

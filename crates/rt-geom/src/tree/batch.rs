@@ -12,7 +12,7 @@ use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::cull::{Line, box_keys, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
-use super::walk::{Areas, Best, prefetch_lines};
+use super::walk::{Areas, Best, candidate, fused, prefetch_lines};
 use super::{Hit, SphereTree};
 use crate::Ray;
 use crate::ray::PreparedRay;
@@ -116,7 +116,7 @@ pub(super) fn fly<S: Simd>(
     let mut slots: Vec<Slot> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
     let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
     for (at, slot) in slots.iter_mut().enumerate() {
-        if launch(slot, root, tree, within, &mut waiting, &mut answer) {
+        if launch(simd, slot, root, tree, within, &mut waiting, &mut answer) {
             lists.push(root.kind() as usize, at);
         }
     }
@@ -131,10 +131,10 @@ pub(super) fn fly<S: Simd>(
                 let slot = &mut slots[at];
                 if !(any && slot.best.exists()) {
                     let (bounds, place) = if kind == SPHERES {
-                        (tree.spheres[place].candidate(&slot.ray, slot.best.limit()), place)
+                        (candidate!(simd, tree.spheres[place], &slot.ray, slot.best.limit()), place)
                     } else {
                         (
-                            tree.triangles[place].candidate(&slot.ray, slot.best.limit()),
+                            candidate!(simd, tree.triangles[place], &slot.ray, slot.best.limit()),
                             tree.spheres.len() + place,
                         )
                     };
@@ -213,7 +213,7 @@ pub(super) fn fly<S: Simd>(
             } else {
                 answer(slot.target, slot.best.hit(tree, &slot.ray));
             }
-            if launch(slot, root, tree, within, &mut waiting, &mut answer) {
+            if launch(simd, slot, root, tree, within, &mut waiting, &mut answer) {
                 lists.push(root.kind() as usize, usize::from(at));
             } else {
                 flying -= 1;
@@ -224,7 +224,8 @@ pub(super) fn fly<S: Simd>(
 
 /// Puts the next ray that may meet anything into the slot; `false` if none is left.
 #[inline(always)]
-fn launch<'a>(
+fn launch<'a, S: Simd>(
+    simd: S,
     slot: &mut Slot<'a>,
     root: Child,
     tree: &SphereTree,
@@ -234,7 +235,7 @@ fn launch<'a>(
 ) -> bool {
     for (target, ray) in waiting {
         slot.ray = PreparedRay::new(ray, within.clone());
-        if slot.line.set(&tree.frame, &slot.ray) {
+        if slot.line.set(simd, &tree.frame, &slot.ray) {
             slot.best = Best::NONE;
             slot.at = root;
             slot.height = 0;

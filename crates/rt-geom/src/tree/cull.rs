@@ -9,10 +9,10 @@
 //! - Balls: the distance from a center to the *segment* that is still of interest, in a frame of the ray. Nothing
 //!   cancels, there is no square root, and one comparison culls in front, behind, beyond the best hit and aside.
 
-use fearless_simd::{Simd, f32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x4, f32x16, f64x4, mask32x16, prelude::*, u32x16};
 use glam::{DVec3, Vec3};
 
-use super::node::{Balls, Boxes, Frame, Lanes, WIDTH, down, narrow, up};
+use super::node::{Balls, Boxes, Frame, Lanes, WIDTH, down, up};
 use crate::ray::PreparedRay;
 
 /// Half the spacing of f32 numbers at 1.
@@ -27,8 +27,8 @@ const LINE_ERROR: f64 = 1.0 / (1u64 << 46) as f64;
 const MAX_LINE_ERROR: f64 = 1.0 / 16.0;
 /// Parameters of points in the unit ball lie within this, the error included.
 const REACH: f64 = 1.125;
-/// Smaller direction components count as this, so that reciprocals stay finite.
-const MIN_COMPONENT: f32 = 1.0 / (1u64 << 40) as f32;
+/// The reciprocals of a direction's components are no larger than this.
+const MAX_INVERSE: f32 = (1u64 << 40) as f32;
 /// Added to keys: makes them positive, so that their bits are in order.
 const KEY_SHIFT: f32 = 4.0;
 
@@ -38,9 +38,10 @@ pub(super) struct Line {
     /// Rows of [`Boxes`] that hold the near planes, `axis` or `axis + 3`, and the far ones, the others.
     near: [usize; 3],
     far: [usize; 3],
-    inverse: [f32; 3],
-    near_offset: [f32; 3],
-    far_offset: [f32; 3],
+    /// By axis; the last lane means nothing.
+    inverse: [f32; 4],
+    near_offset: [f32; 4],
+    far_offset: [f32; 4],
     /// Two unit vectors across the direction, and the direction.
     axes: [Vec3; 3],
     offset: [f32; 3],
@@ -58,25 +59,30 @@ impl Line {
     ///
     /// In place, because a copy of what has just been written piece by piece waits for the writes.
     #[inline(always)]
-    pub(super) fn set(&mut self, frame: &Frame, prepared: &PreparedRay) -> bool {
+    pub(super) fn set<S: Simd>(&mut self, simd: S, frame: &Frame, prepared: &PreparedRay) -> bool {
         let PreparedRay { ray, start, end, mut square, inverse_square: mut inverse, .. } = *prepared;
-        let origin = frame.point(ray.origin());
-        let mut along = ray.direction();
+        let origin = frame.lanes(simd, ray.origin());
+        let mut along = four(simd, ray.direction());
         let mut unit = 1.0;
         if !(1e-280..1e280).contains(&square) {
             // The squares over- or underflow.
-            (along, unit) = scaled(along);
-            square = along.length_squared();
+            let direction;
+            (direction, unit) = scaled(ray.direction());
+            along = four(simd, direction);
+            square = direction.length_squared();
             inverse = 1.0 / square;
         }
+        let error = (1.0 + sum(origin.abs())) * LINE_ERROR;
+        let error_up = up(error);
+        // What takes long begins first, and no division waits for another or for the root.
+        let reciprocal = 1.0 / along;
         let length = square.sqrt();
-        // 1 / length, without waiting for another division.
         let direction = along * (length * inverse);
-        let dot = origin.x * along.x + origin.y * along.y + origin.z * along.z;
+        let dot = sum(origin * along);
         let base = -dot * (length * inverse);
-        let nearest = origin - (dot * inverse) * along;
+        let nearest = origin - along * (dot * inverse);
+        let unscaled_length = length;
         let length = length * unit * frame.scale();
-        let error = (1.0 + base.abs() + nearest.x.abs() + nearest.y.abs() + nearest.z.abs()) * LINE_ERROR;
         // Written so that NaN goes this way.
         if !(error < MAX_LINE_ERROR && length > f64::MIN_POSITIVE && length < f64::INFINITY) {
             *self = Self::EVERYTHING;
@@ -84,30 +90,26 @@ impl Line {
         }
         let first = (start * length - base - error).max(-REACH);
         let last = (end * length - base + error).min(REACH);
-        let distance = nearest.x * nearest.x + nearest.y * nearest.y + nearest.z * nearest.z;
-        if distance > (1.0 + error) * (1.0 + error) || first > last {
+        if sum(nearest * nearest) > (1.0 + error) * (1.0 + error) || first > last {
             return false;
         }
-        let error_up = up(error);
+        let (w, q) = (narrow_lanes(simd, direction), narrow_lanes(simd, nearest));
+        let inverse = narrow_lanes(simd, reciprocal * unscaled_length);
+        let inverse = inverse.abs().min(f32x4::splat(simd, MAX_INVERSE)).copysign(inverse);
+        let center = q * inverse;
+        let slack = inverse.abs() * (BOX_SLACK + error_up);
+        inverse.store_slice(&mut self.inverse);
+        (-(center + slack)).store_slice(&mut self.near_offset);
+        (slack - center).store_slice(&mut self.far_offset);
         for axis in 0..3 {
-            let w = narrow(direction[axis]);
-            let q = narrow(nearest[axis]);
-            let divisor = if w.abs() < MIN_COMPONENT { MIN_COMPONENT.copysign(w) } else { w };
-            let inverse = 1.0 / divisor;
-            let center = -(q * inverse);
-            let slack = inverse.abs() * (BOX_SLACK + error_up);
-            let back = 3 * usize::from(w.is_sign_negative());
+            let back = 3 * usize::from(inverse[axis].is_sign_negative());
             self.near[axis] = axis + back;
             self.far[axis] = axis + 3 - back;
-            self.inverse[axis] = inverse;
-            self.near_offset[axis] = center - slack;
-            self.far_offset[axis] = center + slack;
         }
-        let w = direction.as_vec3();
-        let q = nearest.as_vec3();
+        let w = Vec3::new(w[0], w[1], w[2]);
         self.axes = across(w);
         for (offset, axis) in self.offset.iter_mut().zip(&self.axes) {
-            *offset = axis.x * q.x + axis.y * q.y + axis.z * q.z;
+            *offset = axis.x * q[0] + axis.y * q[1] + axis.z * q[2];
         }
         self.ball_slack = BALL_SLACK + error_up;
         self.start = down(first);
@@ -122,9 +124,9 @@ impl Line {
     pub(super) const EVERYTHING: Self = Self {
         near: [0, 1, 2],
         far: [3, 4, 5],
-        inverse: [1.0 / (1 << 30) as f32; 3],
-        near_offset: [-8.0; 3],
-        far_offset: [8.0; 3],
+        inverse: [1.0 / (1 << 30) as f32; 4],
+        near_offset: [-8.0; 4],
+        far_offset: [8.0; 4],
         axes: [Vec3::ZERO; 3],
         offset: [0.0; 3],
         ball_slack: 8.0,
@@ -150,6 +152,25 @@ impl Line {
     pub(super) fn last_key(&self) -> u32 {
         (self.end + KEY_SHIFT).to_bits()
     }
+}
+
+/// A vector in the first three lanes.
+#[inline(always)]
+pub(super) fn four<S: Simd>(simd: S, v: DVec3) -> f64x4<S> {
+    f64x4::simd_from(simd, [v.x, v.y, v.z, v.z])
+}
+
+/// The sum of the first three lanes.
+#[inline(always)]
+fn sum<S: Simd>(v: f64x4<S>) -> f64 {
+    v[0] + v[1] + v[2]
+}
+
+/// The nearest f32 numbers: the error counts in the slack.
+#[inline(always)]
+fn narrow_lanes<S: Simd>(simd: S, v: f64x4<S>) -> f32x4<S> {
+    let (low, high) = v.split();
+    simd.narrow_f64x2(low, high)
 }
 
 /// The vector divided by a power of two near its greatest component, and that power.

@@ -4,8 +4,10 @@
 //! rounded outward when they are narrowed, so a bound contains exactly what it bounds; what the arithmetic of a query
 //! loses is made up for by the query's own slack (`cull.rs`).
 
+use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
 
+use super::cull::four;
 use crate::Sphere;
 
 /// Children of a node, and primitives of a leaf block.
@@ -171,6 +173,12 @@ impl Frame {
         (p * 0.5 - self.center * 0.5) * self.scale * 2.0
     }
 
+    /// The same in the first three lanes of a vector.
+    #[inline(always)]
+    pub(super) fn lanes<S: Simd>(&self, simd: S, p: DVec3) -> f64x4<S> {
+        (four(simd, p) * 0.5 - four(simd, self.center) * 0.5) * self.scale * 2.0
+    }
+
     #[inline(always)]
     pub(super) fn length(&self, length: f64) -> f64 {
         length * self.scale
@@ -193,23 +201,18 @@ impl Frame {
     }
 }
 
-/// The next f32 above: never less than `x`, for finite `x` in the range of f32.
+/// An f32 that is not less than `x`, for `x` in the range of f32: the nearest and one or two steps more.
+///
+/// (`next_up` has branches, and this is on the way of every ray.)
 #[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest, then one step outward")]
+#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest, then outward")]
 pub(super) fn up(x: f64) -> f32 {
-    (x as f32).next_up()
+    let nearest = x as f32;
+    nearest + (nearest.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
-/// The next f32 below: never more than `x`, for finite `x` in the range of f32.
+/// An f32 that is not more than `x`, likewise.
 #[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest, then one step outward")]
 pub(super) fn down(x: f64) -> f32 {
-    (x as f32).next_down()
-}
-
-/// The nearest f32: the error counts in the slack of the cull.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "rounded to nearest")]
-pub(super) fn narrow(x: f64) -> f32 {
-    x as f32
+    -up(-x)
 }

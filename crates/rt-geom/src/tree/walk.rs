@@ -8,7 +8,7 @@
 use std::hint::black_box;
 use std::ops::Range;
 
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd};
 
 use super::cull::{Line, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
@@ -30,7 +30,9 @@ pub struct Visits {
 /// A part of the tree that is still to be visited: the key of its entry above its [`Child`].
 pub(super) type Pending = u64;
 
-/// Entries that a stack of the usual size holds; [`SphereTree::stack`] tells what a tree needs.
+/// Entries that stacks of the usual sizes hold; [`SphereTree::stack`] tells what a tree needs. To clear more than is
+/// needed takes time.
+const SMALL_STACK: usize = 48;
 const STACK: usize = 128;
 
 /// With more primitives than this, what a walk reads is no longer in the cache nearby, and is asked for early.
@@ -40,6 +42,24 @@ const CACHED: usize = 1 << 15;
 fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
     u64::from(keys[lane]) << 32 | u64::from(children[lane].bits())
 }
+
+/// Whether the instruction set has the fused multiply-add; known when compiled.
+#[inline(always)]
+pub(super) fn fused<S: Simd>(simd: S) -> bool {
+    !matches!(simd.level(), Level::Fallback(_) | Level::Sse2(_) | Level::Sse4_2(_))
+}
+
+/// What a shape offers to a ray, in the arithmetic of the instruction set.
+macro_rules! candidate {
+    ($simd:expr, $shape:expr, $ray:expr, $limit:expr) => {
+        if fused($simd) {
+            $shape.candidate::<true>($ray, $limit)
+        } else {
+            $shape.candidate::<false>($ray, $limit)
+        }
+    };
+}
+pub(super) use candidate;
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug)]
@@ -145,15 +165,18 @@ pub(super) fn cast<S: Simd>(
 ) -> Option<Hit> {
     let prepared = PreparedRay::new(ray, within);
     let mut line = Line::EVERYTHING;
-    if !line.set(&tree.frame, &prepared) {
+    if !line.set(simd, &tree.frame, &prepared) {
         return None;
     }
-    let mut usual = [0; STACK];
-    let mut large = Vec::new();
-    let stack = if tree.stack <= STACK {
+    let (mut small, mut usual, mut large);
+    let stack = if tree.stack <= SMALL_STACK {
+        small = [0; SMALL_STACK];
+        &mut small[..]
+    } else if tree.stack <= STACK {
+        usual = [0; STACK];
         &mut usual[..]
     } else {
-        large.resize(tree.stack, 0);
+        large = vec![0; tree.stack];
         &mut large[..]
     };
     let best = walk(simd, tree, &prepared, any, &mut line, stack, visits);
@@ -245,7 +268,7 @@ fn walk<S: Simd>(
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
                     visits.tests += 1;
-                    if let Some(bounds) = tree.spheres[place].candidate(ray, best.limit()) {
+                    if let Some(bounds) = candidate!(simd, tree.spheres[place], ray, best.limit()) {
                         best.offer(bounds, place, tree, ray);
                     }
                 }
@@ -258,7 +281,7 @@ fn walk<S: Simd>(
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
                     visits.tests += 1;
-                    if let Some(bounds) = tree.triangles[place].candidate(ray, best.limit()) {
+                    if let Some(bounds) = candidate!(simd, tree.triangles[place], ray, best.limit()) {
                         best.offer(bounds, tree.spheres.len() + place, tree, ray);
                     }
                 }

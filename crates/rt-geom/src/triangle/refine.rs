@@ -291,7 +291,7 @@ mod tests {
             let ray = Ray::new(origin, target - origin).unwrap();
             let triangle = Triangle::new(a, b, c).unwrap();
             let whole = PreparedRay::new(&ray, f64::NEG_INFINITY..f64::INFINITY);
-            let Some(bounds) = triangle.candidate(&whole, f64::INFINITY) else { continue };
+            let Some(bounds) = triangle.candidate::<true>(&whole, f64::INFINITY) else { continue };
             let t = exact::integer_t(&triangle, &ray);
             assert!(bounds.low <= t && t <= bounds.high, "{triangle:?} {ray:?} {bounds:?}");
             hits += usize::from(bounds.low < bounds.high);
