@@ -98,12 +98,6 @@ impl Sphere {
         newton::closest(self, ray, within.start, within.end)
     }
 
-    /// Returns the correctly rounded `t` of a closest hit that is known to exist, from its bounds: what `closest` gives.
-    #[inline]
-    pub(crate) fn refine(&self, prepared: &PreparedRay, _: Candidate) -> Option<f64> {
-        self.closest(prepared.ray, prepared.within())
-    }
-
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {

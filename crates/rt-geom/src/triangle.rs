@@ -223,12 +223,6 @@ impl Triangle {
         refine::closest_with_weights(self, ray, within.start, within.end)
     }
 
-    /// Returns the correctly rounded `t` of a hit that is known to exist: what `closest` gives.
-    #[inline]
-    pub(crate) fn refine(&self, ray: &Ray) -> f64 {
-        self.closest(ray, f64::NEG_INFINITY..f64::INFINITY).expect("a candidate is a hit")
-    }
-
     /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
     /// `limit`.
     #[inline(always)]

@@ -142,10 +142,7 @@ impl Best {
         let t = if low.to_bits() == high.to_bits() {
             low
         } else {
-            match tree.spheres.get(self.place) {
-                Some(sphere) => sphere.refine(ray, self.bounds).expect("a candidate is a hit"),
-                None => tree.triangles[self.place - tree.spheres.len()].refine(ray.ray),
-            }
+            tree.rounded(self.place, ray).expect("a candidate is a hit")
         };
         Some(Hit { index: tree.index[self.place] as usize, t })
     }
