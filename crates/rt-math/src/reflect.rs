@@ -43,32 +43,53 @@ const ERROR_FLOOR: f64 = power_of_two(-800);
 
 #[inline(always)]
 fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> DVec3 {
-    let (v, n) = ([vx, vy, vz], [nx, ny, nz]);
+    let (v, n) = (DVec3::new(vx, vy, vz), DVec3::new(nx, ny, nz));
+    let (reflected, certain) = reflect_if_certain::<FMA>(v, n);
+    if certain {
+        decided(Stage::DoubleDouble);
+        return reflected;
+    }
+    rest(v, n)
+}
+
+/// Returns what [`reflect`] returns, and whether it is that: `false` where double-double does not decide the rounding.
+///
+/// It has no branch, so that a loop over many vectors can be compiled into vector instructions. `FMA` means the same as for
+/// [`two_prod`], and the bits do not depend on it.
+///
+/// ```
+/// use glam::DVec3;
+/// use rt_math::exact::reflect_if_certain;
+///
+/// let (reflected, certain) = reflect_if_certain::<false>(DVec3::new(1.0, -1.0, 0.0), 5.0 * DVec3::Y);
+/// assert!(certain && reflected == DVec3::new(1.0, 1.0, 0.0));
+/// assert!(!reflect_if_certain::<false>(DVec3::X, DVec3::ZERO).1);
+/// ```
+#[inline(always)]
+#[must_use]
+pub fn reflect_if_certain<const FMA: bool>(incident: DVec3, normal: DVec3) -> (DVec3, bool) {
+    let (v, n) = (incident.to_array(), normal.to_array());
     let [(vn, vn_low, size), (nn, nn_low, _)] = [dot::<FMA>(v, n), dot::<FMA>(n, n)];
     // NaN and infinity fail these comparisons
-    if (size > 1.0 / WINDOW) & (size < WINDOW) & (nn > 1.0 / WINDOW) & (nn < WINDOW) {
-        let inverse = 1.0 / nn;
-        let k = 2.0 * vn * inverse;
-        let k_low = (remainder::<FMA>(2.0 * vn, k, nn) + (2.0 * vn_low - k * nn_low)) * inverse;
-        let weight = size * inverse;
-        let (mut lower, mut upper) = ([0.0; 3], [0.0; 3]);
-        for i in 0..3 {
-            let (kn, kn_low) = two_prod::<FMA>(k, n[i]);
-            let (x, x_error) = two_diff(v[i], kn);
-            let x_low = x_error - (kn_low + k_low * n[i]);
-            // with n_i = 0 the component is v_i, and nothing has been rounded
-            let floor = if n[i] == 0.0 { 0.0 } else { ERROR_FLOOR };
-            let error = (v[i].abs() + weight * n[i].abs()) * ERROR + floor;
-            // the rounding test, for all components at once
-            lower[i] = x + (x_low - error);
-            upper[i] = x + (x_low + error);
-        }
-        if (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2]) {
-            decided(Stage::DoubleDouble);
-            return DVec3::from_array(upper);
-        }
+    let in_range = (size > 1.0 / WINDOW) & (size < WINDOW) & (nn > 1.0 / WINDOW) & (nn < WINDOW);
+    let inverse = 1.0 / nn;
+    let k = 2.0 * vn * inverse;
+    let k_low = (remainder::<FMA>(2.0 * vn, k, nn) + (2.0 * vn_low - k * nn_low)) * inverse;
+    let weight = size * inverse;
+    let (mut lower, mut upper) = ([0.0; 3], [0.0; 3]);
+    for i in 0..3 {
+        let (kn, kn_low) = two_prod::<FMA>(k, n[i]);
+        let (x, x_error) = two_diff(v[i], kn);
+        let x_low = x_error - (kn_low + k_low * n[i]);
+        // with n_i = 0 the component is v_i, and nothing has been rounded
+        let floor = if n[i] == 0.0 { 0.0 } else { ERROR_FLOOR };
+        let error = (v[i].abs() + weight * n[i].abs()) * ERROR + floor;
+        // the rounding test, for all components at once
+        lower[i] = x + (x_low - error);
+        upper[i] = x + (x_low + error);
     }
-    rest(DVec3::new(vx, vy, vz), DVec3::new(nx, ny, nz))
+    let certain = (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2]);
+    (DVec3::from_array(upper), in_range & certain)
 }
 
 /// The dot product as a double and a correction, and the sum of the magnitudes of its terms.

@@ -27,6 +27,7 @@
 //! assert_eq!(exact, Integer::from_f64(product) + Integer::from_f64(error));
 //! ```
 
+mod dot;
 mod double_double;
 mod dyadic;
 mod error_free;
@@ -34,6 +35,8 @@ mod fma;
 mod round;
 pub(crate) mod stage;
 
+pub use crate::reflect::reflect_if_certain;
+pub use dot::{dot_sign, dot_with_error};
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
 pub use error_free::{fast_two_sum, remainder, two_diff, two_prod, two_sum};
