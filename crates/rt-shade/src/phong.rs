@@ -12,7 +12,10 @@
 //!
 //! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
+use rt_math::exact::dot_sign;
 use rt_math::reflect;
 
 use crate::color::clamp_channel;
@@ -82,9 +85,10 @@ pub fn phong(
     if lights.is_empty() {
         return surface;
     }
+    // The side is told by the vectors as given: once they are rounded to length 1, a grazing view may change it.
+    let turn = if dot_sign(direction, normal) == Some(Ordering::Greater) { -1.0 } else { 1.0 };
     let direction = unit(direction);
-    let normal = unit(normal);
-    let normal = normal * if direction.dot(normal) > 0.0 { -1.0 } else { 1.0 };
+    let normal = turn * unit(normal);
 
     let mut color = material.ambient * surface;
     for light in lights {
@@ -107,12 +111,19 @@ pub fn phong(
 /// vector that is not finite has no direction: NaN.
 #[inline]
 fn unit(v: DVec3) -> DVec3 {
-    let length_squared = v.length_squared();
-    // Within these limits no square that counts has left the range of f64.
-    if (1e-200..1e200).contains(&length_squared) { v * (1.0 / length_squared.sqrt()) } else { unit_scaled(v) }
+    let (unit, ordinary) = ordinary_unit(v);
+    if ordinary { unit } else { unit_scaled(v) }
 }
 
-/// [`unit`] for what its fast path refuses.
+/// Returns what [`unit`] returns, and whether it is that: `false` for lengths out of the ordinary.
+#[inline(always)]
+pub(crate) fn ordinary_unit(v: DVec3) -> (DVec3, bool) {
+    let length_squared = v.length_squared();
+    // Within these limits no square that counts has left the range of f64.
+    (v * (1.0 / length_squared.sqrt()), (1e-200..1e200).contains(&length_squared))
+}
+
+/// [`unit`] for what is not ordinary.
 #[cold]
 fn unit_scaled(v: DVec3) -> DVec3 {
     if v == DVec3::ZERO {
@@ -231,6 +242,31 @@ mod tests {
             prop_assert!((unit.length() - 1.0).abs() < 4.0 * f64::EPSILON, "{:?} gave {:?}", v, unit);
             prop_assert!(unit.dot(v.signum()) > 0.0, "{:?} gave {:?}", v, unit);
         }
+    }
+
+    #[test]
+    fn a_grazing_view_has_its_exact_side() {
+        use crate::reference::big;
+        let mut random = 1u64;
+        let mut number = || {
+            random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            (random >> 11) as f64 / 2f64.powi(52) - 1.0
+        };
+        let mut rounding_would_err = 0;
+        for _ in 0..10_000 {
+            let n = DVec3::new(number(), number(), number());
+            let (x, y) = (number(), number());
+            // Perpendicular within the rounding of z.
+            let d = DVec3::new(x, y, -(x * n.x + y * n.y) / n.z);
+            let exact = big(d.x) * big(n.x) + big(d.y) * big(n.y) + big(d.z) * big(n.z);
+            let away = exact > big(0.0);
+            rounding_would_err += usize::from((unit(d).dot(unit(n)) > 0.0) != away);
+            let lit_from = |position| {
+                phong(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(position)]) != DVec3::splat(SHINY.ambient)
+            };
+            assert_eq!([lit_from(-n), lit_from(n)], [away, !away], "direction {d:?}, normal {n:?}");
+        }
+        assert!(rounding_would_err > 500, "{rounding_would_err}");
     }
 
     #[test]
