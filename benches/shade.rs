@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
-use rt_shade::{Material, PointLight, Texture, phong, sphere_uv};
+use rt_shade::{Material, PointLight, SurfacePoint, Texture, phong, phong_batch, sphere_uv};
 
 /// Inputs of each bench: enough that branches are not learnt by heart.
 const COUNT: usize = 4096;
@@ -87,6 +87,19 @@ fn shading(criterion: &mut Criterion) {
                         black_box(phong(black_box(v), v - 5.0 * DVec3::Z, v, DVec3::ONE, &material, lights));
                     }
                 });
+            });
+            let seen = |&v: &DVec3| SurfacePoint {
+                point: v,
+                direction: v - 5.0 * DVec3::Z,
+                normal: v,
+                surface: DVec3::ONE,
+                material: &material,
+            };
+            let points: Vec<_> = vectors.iter().map(seen).collect();
+            let mut colors = vec![DVec3::ZERO; COUNT];
+            let id = BenchmarkId::new(format!("ours_batch_shininess_{shininess}"), format!("{count}_lights"));
+            group.bench_function(id, |b| {
+                b.iter(|| phong_batch(black_box(&points), &lights[..count], black_box(&mut colors)));
             });
             let id = BenchmarkId::new(format!("textbook_shininess_{shininess}"), format!("{count}_lights"));
             group.bench_function(id, |b| {

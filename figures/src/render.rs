@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::{Hit, Ray, Shape, SphereTree};
 use rt_shade::color::{clamp, interpolate, to_sample};
-use rt_shade::{PointLight, phong, texture_uv};
+use rt_shade::{PointLight, SurfacePoint, phong_batch, texture_uv};
 
 use crate::camera::{Size, View};
 use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
@@ -92,12 +92,17 @@ impl Renderer {
 
     /// The colour that a ray brings back.
     pub(crate) fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
-        let Some(Hit { index, t }) = hit else { return self.background };
-        let point = ray.at(t);
+        hit.map_or(self.background, |hit| self.seen(ray, hit).shaded(&self.lights))
+    }
+
+    /// The point that a ray hits.
+    fn seen(&self, ray: &Ray, hit: Hit) -> SurfacePoint<'_> {
+        let Hit { index, t } = hit;
+        let (point, direction) = (ray.at(t), ray.direction());
         match self.tree.shape(index) {
             Shape::Sphere(sphere) => {
                 // A sphere of radius 0 faces whoever looks at it.
-                let normal = if sphere.radius() > 0.0 { sphere.normal(point) } else { -ray.direction() };
+                let normal = if sphere.radius() > 0.0 { sphere.normal(point) } else { -direction };
                 let look = self.sphere_looks[index];
                 let (surface, material) = match look.checked_sub(COLOR) {
                     Some(position) => (self.colors[position as usize], &DEFAULT_MATERIAL),
@@ -106,21 +111,21 @@ impl Renderer {
                         (paint_at(paint, normal), material)
                     }
                 };
-                phong(point, ray.direction(), normal, surface, material, &self.lights)
+                SurfacePoint { point, direction, normal, surface, material }
             }
             Shape::Triangle(triangle) => {
                 let index = index - self.sphere_looks.len();
-                let look = &self.looks[self.triangle_looks[index] as usize];
+                let Look { paint, material } = &self.looks[self.triangle_looks[index] as usize];
                 let colors = self.vertex_colors.get(index).and_then(Option::as_ref);
-                let surface = match (colors, &look.paint) {
+                let surface = match (colors, paint) {
                     (Some(colors), _) => triangle
                         .hit_barycentric(ray)
                         .map_or(colors[0], |weights| interpolate(colors, weights)),
                     (None, Paint::Color(color)) => *color,
                     (None, Paint::Image { .. }) => unreachable!("a triangle's look has a color"),
                 };
-                let normal = triangle.normal().unwrap_or(-ray.direction());
-                phong(point, ray.direction(), normal, surface, &look.material, &self.lights)
+                let normal = triangle.normal().unwrap_or(-direction);
+                SurfacePoint { point, direction, normal, surface, material }
             }
         }
     }
@@ -142,19 +147,21 @@ fn paint_at(paint: &Paint, normal: DVec3) -> DVec3 {
 
 /// A thread's workspace for the rays of one tile.
 #[derive(Default)]
-struct Tile {
+struct Tile<'a> {
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
+    /// What the rays see, and in which colours, without those that see nothing.
+    seen: Vec<SurfacePoint<'a>>,
+    colors: Vec<DVec3>,
     /// The colours of the tile's pixels, row by row: the result.
     pixels: Vec<DVec3>,
 }
 
-impl Tile {
+impl<'a> Tile<'a> {
     /// Finds the colours of a tile's pixels and returns how many rays hit something.
-    fn trace(&mut self, renderer: &Renderer, view: &View, columns: Range<u32>, rows: Range<u32>) -> u64 {
+    fn trace(&mut self, renderer: &'a Renderer, view: &View, columns: Range<u32>, rows: Range<u32>) -> u64 {
         let samples = view.size().samples;
         self.rays.clear();
-        self.pixels.clear();
         let pixels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
         for (column, row) in pixels {
             let parts = (0..samples).flat_map(|y| (0..samples).map(move |x| (x, y)));
@@ -165,12 +172,22 @@ impl Tile {
         self.hits.resize(self.rays.len(), None);
         renderer.tree.closest_batch(&self.rays, AHEAD, &mut self.hits);
 
+        self.seen.clear();
+        let met = self.rays.iter().zip(&self.hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
+        self.seen.extend(met.map(|(ray, hit)| renderer.seen(ray, hit)));
+        self.colors.resize(self.seen.len(), DVec3::ZERO);
+        phong_batch(&self.seen, &renderer.lights, &mut self.colors);
+
         // Each sample is clamped before the mean, so that one bright highlight does not outshine its pixel.
-        let per_pixel = (samples * samples) as usize;
-        for (rays, hits) in self.rays.chunks_exact(per_pixel).zip(self.hits.chunks_exact(per_pixel)) {
-            let sum: DVec3 = rays.iter().zip(hits).map(|(ray, hit)| clamp(renderer.color(ray, *hit))).sum();
+        self.pixels.clear();
+        let mut colors = self.colors.iter();
+        let mut color = |hit: &Option<Hit>| {
+            clamp(if hit.is_some() { *colors.next().expect("one for each hit") } else { renderer.background })
+        };
+        for hits in self.hits.chunks_exact((samples * samples) as usize) {
+            let sum: DVec3 = hits.iter().map(&mut color).sum();
             self.pixels.push(sum / f64::from(samples * samples));
         }
-        self.hits.iter().flatten().count() as u64
+        self.seen.len() as u64
     }
 }

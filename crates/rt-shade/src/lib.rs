@@ -20,6 +20,7 @@ pub mod color;
 mod double_word;
 mod mapping;
 mod phong;
+mod phong_batch;
 mod power;
 #[cfg(test)]
 mod reference;
@@ -27,4 +28,5 @@ mod texture;
 
 pub use mapping::{sphere_uv, texture_uv};
 pub use phong::{Material, PointLight, phong};
+pub use phong_batch::{SurfacePoint, phong_batch};
 pub use texture::Texture;

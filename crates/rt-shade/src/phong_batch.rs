@@ -1,0 +1,359 @@
+//! Phong's model for many points at once.
+//!
+//! Points go through the formulas of [`phong`] in groups of [`LANES`], operation by operation, without a branch, so that the
+//! compiler makes vector instructions of them. Every operation rounds as the same one in [`phong`] does, and so the bits are the same. What
+//! is out of the ordinary in a point (a length beyond 1e±100, a side or a rounding that needs exact integers, an odd
+//! shininess) makes its colour NaN on the way, and then [`phong`] itself answers.
+
+use fearless_simd::{Level, Simd};
+use glam::DVec3;
+use rt_math::exact::{dot_with_error, reflect_if_certain};
+
+use crate::phong::{Material, PointLight, ordinary_unit, phong};
+use crate::power::ordinary_power;
+
+/// Points that go together.
+const LANES: usize = 8;
+
+/// A point of a surface and how it is seen; [`phong`] explains the fields.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<'a> {
+    /// Where it is.
+    pub point: DVec3,
+    /// The direction that leads from the eye to it, of any length.
+    pub direction: DVec3,
+    /// Perpendicular to the surface, of any length and on either side.
+    pub normal: DVec3,
+    /// The surface's own colour.
+    pub surface: DVec3,
+    /// How the surface answers light.
+    pub material: &'a Material,
+}
+
+impl SurfacePoint<'_> {
+    /// Its colour in the light of `lights`: what [`phong`] returns.
+    pub fn shaded(&self, lights: &[PointLight]) -> DVec3 {
+        phong(self.point, self.direction, self.normal, self.surface, self.material, lights)
+    }
+}
+
+/// Writes the colour of each point in the light of `lights`: bit for bit what [`phong`] returns, but that a NaN may be
+/// another NaN.
+///
+/// # Panics
+/// If the slices differ in length.
+///
+/// ```
+/// use glam::DVec3;
+/// use rt_shade::{Material, PointLight, SurfacePoint, phong_batch};
+///
+/// let material = &Material { ambient: 0.25, diffuse: 0.5, specular: 1.0, shininess: 32.0 };
+/// let lamp = PointLight { position: DVec3::new(0.0, 0.0, 3.0), color: DVec3::ONE };
+/// let seen = |point| {
+///     SurfacePoint { point, direction: DVec3::NEG_Z, normal: DVec3::Z, surface: DVec3::X, material }
+/// };
+/// let points = [seen(DVec3::ZERO), seen(DVec3::X), seen(4.0 * DVec3::Z)];
+/// let mut colors = [DVec3::ZERO; 3];
+/// phong_batch(&points, &[lamp], &mut colors);
+/// assert_eq!(colors, points.map(|point| point.shaded(&[lamp])));
+/// ```
+pub fn phong_batch(points: &[SurfacePoint], lights: &[PointLight], colors: &mut [DVec3]) {
+    assert_eq!(points.len(), colors.len(), "one place for the colour of each point");
+    shade_at(Level::new(), points, lights, colors);
+}
+
+/// [`phong_batch`] with the instructions of a given level; the bits do not depend on it.
+fn shade_at(level: Level, points: &[SurfacePoint], lights: &[PointLight], colors: &mut [DVec3]) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if let Some(simd) = level.as_avx512() {
+            return simd.vectorize(
+                #[inline(always)]
+                || kernel::<true>(points, lights, colors),
+            );
+        }
+        if let Some(simd) = level.as_avx2() {
+            return simd.vectorize(
+                #[inline(always)]
+                || kernel::<true>(points, lights, colors),
+            );
+        }
+    }
+    let _ = level;
+    // Elsewhere vector instructions are always there, or never.
+    kernel::<{ cfg!(target_arch = "aarch64") }>(points, lights, colors);
+}
+
+/// A number of each point of a group.
+type Lanes = [f64; LANES];
+
+/// A vector of each point of a group.
+#[derive(Clone, Copy)]
+struct Vectors([Lanes; 3]);
+
+impl Vectors {
+    #[inline(always)]
+    fn new(vector: impl Fn(usize) -> DVec3) -> Self {
+        let mut lanes = Self([[0.0; LANES]; 3]);
+        for i in 0..LANES {
+            lanes.set(i, vector(i));
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> DVec3 {
+        DVec3::new(self.0[0][i], self.0[1][i], self.0[2][i])
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, vector: DVec3) {
+        [self.0[0][i], self.0[1][i], self.0[2][i]] = vector.to_array();
+    }
+}
+
+#[inline(always)]
+fn kernel<const FMA: bool>(points: &[SurfacePoint], lights: &[PointLight], colors: &mut [DVec3]) {
+    for (points, colors) in points.chunks(LANES).zip(colors.chunks_mut(LANES)) {
+        let shaded = group::<FMA>(points, lights);
+        for (i, (seen, color)) in points.iter().zip(colors).enumerate() {
+            *color = shaded.at(i);
+            if color.is_nan() || lights.is_empty() {
+                *color = seen.shaded(lights);
+            }
+        }
+    }
+}
+
+/// The colours of up to [`LANES`] points, at least one; NaN for those that [`phong`] itself has to shade.
+#[expect(clippy::needless_range_loop, reason = "a loop over lanes reads and writes many arrays alike")]
+#[inline(always)]
+fn group<const FMA: bool>(points: &[SurfacePoint], lights: &[PointLight]) -> Vectors {
+    // The last lanes of a small group repeat its last point.
+    let seen = |i: usize| &points[i.min(points.len() - 1)];
+    let number = |number: fn(&Material) -> f64| -> Lanes {
+        let mut lanes = [0.0; LANES];
+        for i in 0..LANES {
+            lanes[i] = number(seen(i).material);
+        }
+        lanes
+    };
+    let point = Vectors::new(|i| seen(i).point);
+    let given_direction = Vectors::new(|i| seen(i).direction);
+    let given_normal = Vectors::new(|i| seen(i).normal);
+    let surface = Vectors::new(|i| seen(i).surface);
+    let ambient = number(|material| material.ambient);
+    let diffuse = number(|material| material.diffuse);
+    let specular = number(|material| material.specular);
+    let shininess = number(|material| material.shininess);
+
+    let mut direction = given_direction;
+    let mut normal = given_normal;
+    let mut color = surface;
+    for i in 0..LANES {
+        let (value, error) = dot_with_error(given_direction.at(i), given_normal.at(i));
+        let (unit_direction, ordinary) = ordinary_unit(given_direction.at(i));
+        let (unit_normal, also_ordinary) = ordinary_unit(given_normal.at(i));
+        let turn = if value > 0.0 { -1.0 } else { 1.0 };
+        let turn = if (value.abs() > error) & ordinary & also_ordinary { turn } else { f64::NAN };
+        direction.set(i, unit_direction);
+        normal.set(i, turn * unit_normal);
+        color.set(i, ambient[i] * surface.at(i));
+    }
+    for light in lights {
+        let [mut cosine, mut alignment, mut scattered, mut mirrored] = [[0.0; LANES]; 4];
+        for i in 0..LANES {
+            let (incident, ordinary) = ordinary_unit(point.at(i) - light.position);
+            let (reflected, certain) = reflect_if_certain::<FMA>(incident, normal.at(i));
+            cosine[i] = if ordinary { (-incident).dot(normal.at(i)) } else { f64::NAN };
+            alignment[i] = if certain { (-direction.at(i)).dot(reflected) } else { f64::NAN };
+        }
+        for i in 0..LANES {
+            scattered[i] = diffuse[i] * if cosine[i] > 1.0 { 1.0 } else { cosine[i] };
+            mirrored[i] = specular[i] * ordinary_power(clamp_but_nan(alignment[i]), shininess[i]);
+        }
+        for axis in 0..3 {
+            for i in 0..LANES {
+                let below = color.0[axis][i];
+                let matt = below + scattered[i] * surface.0[axis][i] * light.color[axis];
+                let shiny = matt + mirrored[i] * light.color[axis];
+                let lit = if specular[i] == 0.0 { matt } else { shiny };
+                // As in `phong`, but that NaN passes the comparison and stays.
+                color.0[axis][i] = if cosine[i] <= 0.0 { below } else { lit };
+            }
+        }
+    }
+    color
+}
+
+/// Brings a number into `0..=1`, but leaves NaN.
+#[inline(always)]
+fn clamp_but_nan(x: f64) -> f64 {
+    let x = if x < 0.0 { 0.0 } else { x };
+    if x > 1.0 { 1.0 } else { x }
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::Fallback;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A point as plain data.
+    #[derive(Clone, Debug)]
+    struct Case {
+        vectors: [DVec3; 4],
+        material: Material,
+    }
+
+    impl Case {
+        fn seen(&self) -> SurfacePoint<'_> {
+            let [point, direction, normal, surface] = self.vectors;
+            SurfacePoint { point, direction, normal, surface, material: &self.material }
+        }
+    }
+
+    fn ordinary() -> BoxedStrategy<f64> {
+        (-1.0f64..1.0).boxed()
+    }
+
+    /// Mostly ordinary numbers, with every kind of other among them.
+    fn any_number() -> BoxedStrategy<f64> {
+        let special = vec![0.0, -0.0, 1.0, 1e-200, 1e-310, 1e120, f64::MAX, f64::INFINITY, f64::NAN];
+        prop_oneof![8 => ordinary(), 1 => prop::sample::select(special), 1 => any::<u64>().prop_map(f64::from_bits)].boxed()
+    }
+
+    fn vector(number: BoxedStrategy<f64>) -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(number).prop_map(DVec3::from_array)
+    }
+
+    fn case(number: BoxedStrategy<f64>) -> impl Strategy<Value = Case> {
+        let vectors = prop::array::uniform4(vector(number.clone()));
+        let shininess = prop_oneof![2 => 1.0f64..100.0, 1 => number.clone(), 1 => Just(5e5)];
+        let specular = prop_oneof![3 => number.clone(), 1 => Just(0.0)];
+        (vectors, number.clone(), number, specular, shininess).prop_map(
+            |(vectors, ambient, diffuse, specular, shininess)| Case {
+                vectors,
+                material: Material { ambient, diffuse, specular, shininess },
+            },
+        )
+    }
+
+    fn light(number: BoxedStrategy<f64>) -> impl Strategy<Value = PointLight> {
+        let sides = vector(number.clone());
+        (sides, vector(number)).prop_map(|(position, color)| PointLight { position: 4.0 * position, color })
+    }
+
+    /// The instruction sets that this processor has.
+    fn levels() -> Vec<Level> {
+        let best = Level::new();
+        #[cfg(target_arch = "x86_64")]
+        let more = [best.as_avx2().map(Level::Avx2), best.as_avx512().map(Level::Avx512)];
+        #[cfg(not(target_arch = "x86_64"))]
+        let more = [None];
+        [Some(Level::Fallback(Fallback::new())), Some(best)].into_iter().chain(more).flatten().collect()
+    }
+
+    fn check(cases: &[Case], lights: &[PointLight]) -> Result<(), TestCaseError> {
+        let points: Vec<_> = cases.iter().map(Case::seen).collect();
+        let bits = |color: DVec3| color.to_array().map(|c| if c.is_nan() { None } else { Some(c.to_bits()) });
+        for level in levels() {
+            let mut colors = vec![DVec3::ZERO; points.len()];
+            shade_at(level, &points, lights, &mut colors);
+            for (point, color) in points.iter().zip(&colors) {
+                let alone = point.shaded(lights);
+                prop_assert_eq!(bits(*color), bits(alone), "{:?} gave {} instead of {}", point, color, alone);
+            }
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #[test]
+        fn together_points_have_the_bits_that_they_have_alone(
+            cases in prop::collection::vec(case(ordinary()), 0..20),
+            lights in prop::collection::vec(light(ordinary()), 0..4),
+        ) {
+            check(&cases, &lights)?;
+        }
+
+        #[test]
+        fn odd_numbers_disturb_no_neighbour(
+            cases in prop::collection::vec(case(any_number()), 1..20),
+            lights in prop::collection::vec(light(any_number()), 0..4),
+        ) {
+            check(&cases, &lights)?;
+        }
+
+        #[test]
+        fn grazing_views_and_highlights_have_their_bits(
+            cases in prop::collection::vec((case(ordinary()), 0..4), 1..10),
+            lamp in light(ordinary()),
+        ) {
+            let cases: Vec<Case> = cases
+                .into_iter()
+                .map(|(mut case, kind)| {
+                    let [point, direction, normal, _] = case.vectors;
+                    let z = -(direction.x * normal.x + direction.y * normal.y) / normal.z;
+                    case.vectors[1] = match kind {
+                        0 => DVec3 { z, ..direction }, // from the side, within rounding
+                        1 => rt_math::reflect(point - lamp.position, normal), // the light mirrored into the eye
+                        2 => point - lamp.position, // the light behind the eye
+                        _ => DVec3::new(normal.y, -normal.x, 0.0), // from the side, exactly
+                    };
+                    case
+                })
+                .collect();
+            check(&cases, &[lamp])?;
+        }
+    }
+
+    #[test]
+    fn ordinary_points_are_shaded_together() {
+        let material = Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
+        let lights = [PointLight { position: DVec3::new(3.0, 4.0, 5.0), color: DVec3::ONE }; 2];
+        let mut random = 7u64;
+        let mut vector = || {
+            DVec3::from_array([0; 3].map(|_| {
+                random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+                (random >> 11) as f64 / 2f64.powi(52) - 1.0
+            }))
+        };
+        for _ in 0..1000 {
+            let cases = [0; LANES].map(|_| Case { vectors: [0; 4].map(|_| vector()), material });
+            let points = cases.each_ref().map(Case::seen);
+            let shaded = group::<false>(&points, &lights);
+            assert!((0..LANES).all(|i| !shaded.at(i).is_nan()), "{points:?}");
+        }
+    }
+
+    #[test]
+    fn what_rounding_leaves_open_is_left_to_phong() {
+        let material = &Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
+        let lights = [PointLight { position: DVec3::X, color: DVec3::ONE }];
+        let seen = |direction, normal| SurfacePoint {
+            point: DVec3::ZERO,
+            direction,
+            normal,
+            surface: DVec3::ONE,
+            material,
+        };
+        let points = [
+            seen(DVec3::NEG_Y, DVec3::new(1.0, 1.0, 0.0)), // the light is mirrored to (0, 1, 0): is that zero?
+            seen(DVec3::new(-1.0, 1.0, 1e-17), DVec3::ONE), // from which side?
+            seen(DVec3::new(-1.0, 1.0, 0.1), DVec3::ONE),
+        ];
+        let shaded = group::<false>(&points, &lights);
+        assert_eq!([0, 1, 2].map(|i| shaded.at(i).is_nan()), [true, true, false]);
+        let mut colors = [DVec3::ZERO; 3];
+        phong_batch(&points, &lights, &mut colors);
+        assert_eq!(colors, points.map(|point| point.shaded(&lights)));
+    }
+
+    #[test]
+    #[should_panic(expected = "one place for the colour of each point")]
+    fn a_missing_place_is_refused() {
+        phong_batch(&[], &[], &mut [DVec3::ZERO]);
+    }
+}
