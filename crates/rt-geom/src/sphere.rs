@@ -176,7 +176,25 @@ impl Sphere {
     /// Returns the candidate of a line that crosses the surface.
     #[inline(always)]
     fn offer(&self, crossing: &Crossing, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let Approximation { near, far, error, .. } = crossing.approximation();
+        let roots = crossing.approximation();
+        let (low, high) = (roots.near - roots.error, roots.near + roots.error);
+        if low > prepared.start && high < prepared.end {
+            (low <= limit).then_some(Candidate { low, high })
+        } else {
+            self.offer_far(roots.near, roots.far, roots.error, prepared, limit)
+        }
+    }
+
+    /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of the root.
+    #[inline(never)]
+    fn offer_far(
+        &self,
+        near: f64,
+        far: f64,
+        error: f64,
+        prepared: &PreparedRay,
+        limit: f64,
+    ) -> Option<Candidate> {
         let t = if near + error < prepared.start { far } else { near };
         prepared.admit((t - error, t + error), limit, || {
             self.exact_candidate(prepared.ray, prepared.within(), limit)
@@ -255,14 +273,13 @@ struct Approximation {
 impl Crossing {
     #[inline(always)]
     fn approximation(&self) -> Approximation {
-        let root = self.delta.sqrt();
-        // So the division need not wait for the root.
-        let inverse_root = root * (1.0 / self.delta);
+        // The division need not wait for the root.
+        let (root, inverse) = (self.delta.sqrt(), 1.0 / self.delta);
         Approximation {
             near: (-self.b - root) * self.inverse_a,
             far: (root - self.b) * self.inverse_a,
-            error: 1.6 * self.error * inverse_root * self.inverse_a,
-            inverse_root,
+            error: ((1.6 * self.error) * self.inverse_a) * inverse * root,
+            inverse_root: inverse * root,
         }
     }
 

@@ -27,6 +27,8 @@ const LINE_ERROR: f64 = 1.0 / (1u64 << 46) as f64;
 const MAX_LINE_ERROR: f64 = 1.0 / 16.0;
 /// Parameters of points in the unit ball lie within this, the error included.
 const REACH: f64 = 1.125;
+/// More than the rounding of a parameter to f32.
+const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 /// The reciprocals of a direction's components are no larger than this.
 const MAX_INVERSE: f32 = (1u64 << 40) as f32;
 /// Added to keys: makes them positive, so that their bits are in order.
@@ -48,10 +50,9 @@ pub(super) struct Line {
     ball_slack: f32,
     start: f32,
     end: f32,
-    /// The parameter of `t` is `t * length - base`, up to `error`.
+    /// The parameter of `t` is at most `t * length + offset`, rounded to the nearest f32.
     length: f64,
-    base: f64,
-    error: f64,
+    last_offset: f64,
 }
 
 impl Line {
@@ -115,8 +116,7 @@ impl Line {
         self.start = down(first);
         self.end = up(last);
         self.length = length;
-        self.base = base;
-        self.error = error;
+        self.last_offset = error - base + ROUNDING;
         true
     }
 
@@ -133,17 +133,17 @@ impl Line {
         start: -2.0,
         end: 2.0,
         length: 0.0,
-        base: 0.0,
-        error: 1.0,
+        last_offset: 1.0,
     };
 
     /// From now on, only what reaches the parameter `t` or less is of interest.
     #[inline(always)]
     pub(super) fn shorten(&mut self, t: f64) {
-        let last = t * self.length - self.base + self.error;
+        #[expect(clippy::cast_possible_truncation, reason = "the offset makes up for the rounding")]
+        let last = (t * self.length + self.last_offset) as f32;
         // NaN, from an infinite t, shortens nothing.
-        if last < f64::from(self.end) {
-            self.end = up(last);
+        if last < self.end {
+            self.end = last;
         }
     }
 
