@@ -101,16 +101,7 @@ impl Sphere {
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        let prepared = PreparedRay::new(ray, within);
-        match self.line::<false>(ray) {
-            Line::Misses => false,
-            Line::Crosses(crossing) => match crossing.first_ahead(prepared.start) {
-                Some(None) => false,
-                Some(Some(_)) if prepared.end == f64::INFINITY => true,
-                _ => self.offer(&crossing, &prepared, f64::INFINITY).is_some(),
-            },
-            Line::Unsure => exact::closest(self, ray, prepared.within()).is_some(),
-        }
+        self.meets::<false>(&PreparedRay::new(ray, within))
     }
 
     /// Returns where the whole line meets the surface, in ascending order.
@@ -160,6 +151,21 @@ impl Sphere {
         // Scaled by a power of two, so that no square over- or underflows.
         let scaled = w * power_of_two_near_inverse(largest);
         scaled / scaled.length()
+    }
+
+    /// What `any` returns.
+    #[inline(always)]
+    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
+        match self.line::<FMA>(prepared.ray) {
+            Line::Misses => false,
+            // For the whole ray the signs are enough, and need no root.
+            Line::Crosses(crossing) => match crossing.first_ahead(prepared.start) {
+                Some(None) => false,
+                Some(Some(_)) if prepared.end == f64::INFINITY => true,
+                _ => self.offer(&crossing, prepared, f64::INFINITY).is_some(),
+            },
+            Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some(),
+        }
     }
 
     /// Returns bounds of the closest hit's `t`, or `None` if nothing in the range is hit or the hit surely lies

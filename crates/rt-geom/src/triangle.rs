@@ -115,21 +115,7 @@ impl Triangle {
     /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        // For the whole ray the sign of `t` is enough, and needs no division.
-        if within.start.to_bits() == 0 && within.end == f64::INFINITY {
-            match self.line::<false>(ray) {
-                Line::Misses => return false,
-                Line::Hits(crossing) => {
-                    let (height, error) = crossing.height();
-                    if height.abs() > error {
-                        return height > 0.0;
-                    }
-                }
-                Line::Unsure => {}
-            }
-            return exact::closest(self, ray, within).is_some();
-        }
-        self.candidate::<false>(&PreparedRay::new(ray, within), f64::INFINITY).is_some()
+        self.meets::<false>(&PreparedRay::new(ray, within))
     }
 
     /// Returns how the ray, from its origin on, meets the triangle, exactly.
@@ -221,6 +207,26 @@ impl Triangle {
     /// [`Self::hit_barycentric`] give, in less time than both.
     pub fn closest_with_barycentric(&self, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
         refine::closest_with_weights(self, ray, within.start, within.end)
+    }
+
+    /// What `any` returns.
+    #[inline(always)]
+    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
+        if prepared.start.to_bits() != 0 || prepared.end != f64::INFINITY {
+            return self.candidate::<FMA>(prepared, f64::INFINITY).is_some();
+        }
+        // For the whole ray the sign of `t` is enough, and needs no division.
+        match self.line::<FMA>(prepared.ray) {
+            Line::Misses => return false,
+            Line::Hits(crossing) => {
+                let (height, error) = crossing.height();
+                if height.abs() > error {
+                    return height > 0.0;
+                }
+            }
+            Line::Unsure => {}
+        }
+        self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some()
     }
 
     /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond

@@ -12,7 +12,7 @@ use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::cull::{Line, box_keys, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
-use super::walk::{Areas, Best, candidate, fused, prefetch_lines};
+use super::walk::{Areas, Best, ask, fused, prefetch_lines};
 use super::{Hit, SphereTree};
 use crate::Ray;
 use crate::ray::PreparedRay;
@@ -129,23 +129,32 @@ pub(super) fn fly<S: Simd>(
             for i in 0..len {
                 let (place, at) = (survivors.places[i] as usize, survivors.slots[i] as usize);
                 let slot = &mut slots[at];
-                if !(any && slot.best.exists()) {
-                    let (bounds, place) = if kind == SPHERES {
-                        (candidate!(simd, tree.spheres[place], &slot.ray, slot.best.limit()), place)
-                    } else {
-                        (
-                            candidate!(simd, tree.triangles[place], &slot.ray, slot.best.limit()),
-                            tree.spheres.len() + place,
-                        )
-                    };
-                    if let Some(bounds) = bounds
-                        && slot.best.offer(bounds, place, tree, &slot.ray)
-                    {
-                        slot.line.shorten(slot.best.limit());
-                        if any {
-                            slot.height = 0;
-                        }
+                if any {
+                    let met = !slot.best.exists()
+                        && if kind == SPHERES {
+                            ask!(simd, tree.spheres[place], meets(&slot.ray))
+                        } else {
+                            ask!(simd, tree.triangles[place], meets(&slot.ray))
+                        };
+                    if met {
+                        slot.best = Best::SOME;
+                        slot.height = 0;
                     }
+                    continue;
+                }
+                let limit = slot.best.limit();
+                let (bounds, place) = if kind == SPHERES {
+                    (ask!(simd, tree.spheres[place], candidate(&slot.ray, limit)), place)
+                } else {
+                    (
+                        ask!(simd, tree.triangles[place], candidate(&slot.ray, limit)),
+                        tree.spheres.len() + place,
+                    )
+                };
+                if let Some(bounds) = bounds
+                    && slot.best.offer(bounds, place, tree, &slot.ray)
+                {
+                    slot.line.shorten(slot.best.limit());
                 }
             }
         }

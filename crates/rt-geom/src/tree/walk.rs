@@ -49,17 +49,13 @@ pub(super) fn fused<S: Simd>(simd: S) -> bool {
     !matches!(simd.level(), Level::Fallback(_) | Level::Sse2(_) | Level::Sse4_2(_))
 }
 
-/// What a shape offers to a ray, in the arithmetic of the instruction set.
-macro_rules! candidate {
-    ($simd:expr, $shape:expr, $ray:expr, $limit:expr) => {
-        if fused($simd) {
-            $shape.candidate::<true>($ray, $limit)
-        } else {
-            $shape.candidate::<false>($ray, $limit)
-        }
+/// What a shape says of a ray, in the arithmetic of the instruction set.
+macro_rules! ask {
+    ($simd:expr, $shape:expr, $method:ident($($argument:expr),*)) => {
+        if fused($simd) { $shape.$method::<true>($($argument),*) } else { $shape.$method::<false>($($argument),*) }
     };
 }
-pub(super) use candidate;
+pub(super) use ask;
 
 /// The best hit so far.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +70,9 @@ impl Best {
 
     pub(super) const NONE: Self =
         Self { bounds: Candidate { low: f64::INFINITY, high: f64::INFINITY }, place: Self::NOWHERE };
+
+    /// For queries that ask no more than whether there is a hit.
+    pub(super) const SOME: Self = Self { place: 0, ..Self::NONE };
 
     #[inline(always)]
     pub(super) fn exists(&self) -> bool {
@@ -265,7 +264,12 @@ fn walk<S: Simd>(
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
                     visits.tests += 1;
-                    if let Some(bounds) = candidate!(simd, tree.spheres[place], ray, best.limit()) {
+                    let sphere = &tree.spheres[place];
+                    if any {
+                        if ask!(simd, sphere, meets(ray)) {
+                            return Best::SOME;
+                        }
+                    } else if let Some(bounds) = ask!(simd, sphere, candidate(ray, best.limit())) {
                         best.offer(bounds, place, tree, ray);
                     }
                 }
@@ -278,13 +282,15 @@ fn walk<S: Simd>(
                     let place = block * WIDTH + met.trailing_zeros() as usize;
                     met &= met - 1;
                     visits.tests += 1;
-                    if let Some(bounds) = candidate!(simd, tree.triangles[place], ray, best.limit()) {
+                    let triangle = &tree.triangles[place];
+                    if any {
+                        if ask!(simd, triangle, meets(ray)) {
+                            return Best::SOME;
+                        }
+                    } else if let Some(bounds) = ask!(simd, triangle, candidate(ray, best.limit())) {
                         best.offer(bounds, tree.spheres.len() + place, tree, ray);
                     }
                 }
-            }
-            if any && best.exists() {
-                return best;
             }
             if best.limit() < before {
                 line.shorten(best.limit());
