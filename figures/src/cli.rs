@@ -44,9 +44,9 @@ struct Arguments {
 enum Command {
     /// List the six figures
     List,
-    /// Draw a scene, or a file of spheres
+    /// Draw a scene, or a file of spheres or triangles
     Render {
-        /// A scene in TOML, or spheres in XYZ
+        /// A scene in TOML, spheres in XYZ, or a mesh in OBJ
         scene: PathBuf,
         #[command(flatten)]
         options: DrawOptions,
@@ -117,8 +117,8 @@ enum Piece {
     },
     /// A torus knot with colors at its vertices, as OBJ
     Knot {
-        /// Rings along the tube, 64 triangles each
-        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(3..=1_000_000))]
+        /// Rings along the tube, each with a tenth as many vertices
+        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(3..=20_000))]
         segments: u32,
     },
 }

@@ -187,19 +187,20 @@ pub fn random(rule: Rule, count: u32) -> Vec<Ball> {
     }
 }
 
-/// Writes a torus knot as an OBJ mesh with colours at its vertices: a tube of `segments` rings of 32 vertices.
+/// Writes a torus knot as an OBJ mesh with colours at its vertices: a tube of `segments` rings, each of a tenth as many
+/// vertices and at least 8, so that its faces are about square.
 ///
 /// # Errors
 /// What `out` reports.
 pub fn write_knot(segments: u32, out: &mut dyn Write) -> io::Result<()> {
-    const AROUND: u32 = 32;
+    let sides = (segments / 10).max(8);
     // The (2, 3) torus knot.
     let curve = |turn: f64| {
         let (around, along) = (3.0 * turn, 2.0 * turn);
         let distance = 2.0 + around.cos();
         DVec3::new(distance * along.cos(), distance * along.sin(), around.sin())
     };
-    writeln!(out, "# a torus knot: {segments} rings of {AROUND} vertices")?;
+    writeln!(out, "# a torus knot: {segments} rings of {sides} vertices")?;
     for ring in 0..segments {
         let turn = TAU * f64::from(ring) / f64::from(segments);
         let (here, ahead) = (curve(turn), curve(turn + 1e-4));
@@ -208,16 +209,16 @@ pub fn write_knot(segments: u32, out: &mut dyn Write) -> io::Result<()> {
         let core = DVec3::new(2.0 * (2.0 * turn).cos(), 2.0 * (2.0 * turn).sin(), 0.0);
         let outward = (here - core).reject_from(tangent).normalize();
         let sideways = tangent.cross(outward);
-        for step in 0..AROUND {
-            let (sine, cosine) = (TAU * f64::from(step) / f64::from(AROUND)).sin_cos();
+        for step in 0..sides {
+            let (sine, cosine) = (TAU * f64::from(step) / f64::from(sides)).sin_cos();
             let p = here + 0.45 * (cosine * outward + sine * sideways);
             let color = [0.0, 1.0, 2.0].map(|third| 0.55 + 0.4 * (turn + third * TAU / 3.0).cos());
             let [red, green, blue] = color;
             writeln!(out, "v {:.6} {:.6} {:.6} {red:.4} {green:.4} {blue:.4}", p.x, p.y, p.z)?;
         }
     }
-    let vertex = |ring: u32, step: u32| ring % segments * AROUND + step % AROUND + 1;
-    for (ring, step) in (0..segments).flat_map(|ring| (0..AROUND).map(move |step| (ring, step))) {
+    let vertex = |ring: u32, step: u32| ring % segments * sides + step % sides + 1;
+    for (ring, step) in (0..segments).flat_map(|ring| (0..sides).map(move |step| (ring, step))) {
         let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(r, s)| vertex(ring + r, step + s));
         let [a, b, c, d] = corners;
         writeln!(out, "f {a} {b} {c} {d}")?;

@@ -135,6 +135,61 @@ fn two_hundred_kills_leave_whole_files_and_at_most_one_temporary() {
     assert_eq!(folder.names(), ["image.ppm"]);
 }
 
+/// Notes the calls that make a save last, in the file that `SPY_LOG` names, and lets them through.
+const SPY: &str = r#"
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+static void note(const char *call, const char *first, const char *second) {
+    FILE *log = fopen(getenv("SPY_LOG"), "a");
+    fprintf(log, "%s %s %s\n", call, first, second);
+    fclose(log);
+}
+int fsync(int file) {
+    char link[64], name[4096] = "", size[32];
+    struct stat status;
+    snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+    if (readlink(link, name, sizeof name - 1) < 0 || fstat(file, &status) != 0) abort();
+    snprintf(size, sizeof size, "%lld", (long long)status.st_size);
+    note("fsync", name, size);
+    return ((int (*)(int))dlsym(RTLD_NEXT, "fsync"))(file);
+}
+int rename(const char *from, const char *to) {
+    note("rename", from, to);
+    return ((int (*)(const char *, const char *))dlsym(RTLD_NEXT, "rename"))(from, to);
+}
+"#;
+
+#[test]
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn the_bytes_reach_the_disk_before_they_get_the_name() {
+    // No crash of a computer can be tried here, so the calls that guard against one are observed.
+    let folder = Folder::new("spy");
+    let [source, library, log] = ["spy.c", "spy.so", "log"].map(|name| folder.join(name));
+    let target = folder.join("image.ppm");
+    fs::write(&source, SPY).unwrap();
+    let mut compiler = Command::new("cc");
+    compiler.args(["-shared", "-fPIC", "-o"]).args([&library, &source]).arg("-ldl");
+    if !compiler.status().is_ok_and(|status| status.success()) {
+        eprintln!("SKIPPED: no C compiler called cc");
+        return;
+    }
+    let [library, log_variable] = [("LD_PRELOAD", &library), ("SPY_LOG", &log)]
+        .map(|(name, path)| format!("{name}={}", path.display()));
+    let wrapper = ["env", library.as_str(), log_variable.as_str()];
+    assert_eq!(helper_says(&wrapper, &target).as_deref(), Some("saved"));
+
+    let log = fs::read_to_string(log).unwrap();
+    let words: Vec<&str> = log.split_whitespace().collect();
+    let ["fsync", temporary, length, "rename", from, to] = words[..] else { panic!("{log}") };
+    assert_eq!((from, Path::new(to)), (temporary, target.as_path()));
+    assert_ne!(from, to);
+    assert_eq!(length, LENGTH.to_string(), "all bytes, before the rename");
+}
+
 #[test]
 fn savers_at_once_do_not_disturb_each_other() {
     let folder = Folder::new("at-once");
