@@ -1,6 +1,6 @@
 //! From a scene to pixels: rays, the closest hit of each, its colour, and the mean of the colours in a pixel.
 //!
-//! The picture is cut into bands of rows that rayon hands to threads, each band into square tiles whose rays go through
+//! The picture is cut into bands of rows that rayon hands to threads, each band into tiles whose rays go through
 //! the tree together. A pixel's value depends on nothing but its own rays, summed in a fixed order, so the bytes are
 //! the same for any number of threads.
 
@@ -15,8 +15,10 @@ use rt_shade::{PointLight, SurfacePoint, phong_batch, texture_uv};
 use crate::camera::{Size, View};
 use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
 
-/// The side of a tile in pixels: its rays are close enough together to visit the same nodes of the tree.
-const TILE: u32 = 8;
+/// The size of a tile in pixels: its rays are close enough together to visit the same nodes of the tree, and many enough to
+/// be worth a call.
+const TILE_WIDTH: u32 = 32;
+const TILE_HEIGHT: u32 = 8;
 
 /// The ray's own range: from its origin on, without end.
 pub(crate) const AHEAD: Range<f64> = 0.0..f64::INFINITY;
@@ -61,13 +63,13 @@ impl Renderer {
         let Size { width, samples, .. } = view.size();
         let row_length = 3 * width as usize;
         let mut picture = vec![0; row_length * rows.len()];
-        let hits = (rows.clone().into_par_iter().step_by(TILE as usize))
-            .zip(picture.par_chunks_mut(row_length * TILE as usize))
+        let hits = (rows.clone().into_par_iter().step_by(TILE_HEIGHT as usize))
+            .zip(picture.par_chunks_mut(row_length * TILE_HEIGHT as usize))
             .map_init(Tile::default, |tile, (top, band)| {
-                let bottom = rows.end.min(top + TILE);
+                let bottom = rows.end.min(top + TILE_HEIGHT);
                 let mut hits = 0;
-                for left in (0..width).step_by(TILE as usize) {
-                    let right = width.min(left + TILE);
+                for left in (0..width).step_by(TILE_WIDTH as usize) {
+                    let right = width.min(left + TILE_WIDTH);
                     hits += tile.trace(self, view, left..right, top..bottom);
                     for (tile_row, line) in tile
                         .pixels
