@@ -15,3 +15,10 @@ pub use ray::Ray;
 pub use sphere::{Side, Sphere};
 pub use tree::{HalvingTree, Hit, Shape, SphereTree, Visits};
 pub use triangle::{Triangle, Verdict};
+
+// The reference of the tests, for those that look inside.
+#[cfg(test)]
+extern crate self as rt_geom;
+#[cfg(test)]
+#[path = "../tests/reference/mod.rs"]
+mod reference;

@@ -7,46 +7,12 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
+use reference::sphere::Equation;
 use reference::{
-    Exact, Rng, cases, cross, dot, exact, holds, is_correctly_rounded, minus, scale, scale_vector, vector,
+    Rng, cases, cross, dot, exact, holds, is_correctly_rounded, minus, scale, scale_vector, vector,
 };
 use rt_geom::{Ray, Side, Sphere};
 use rt_math::Roots;
-
-/// `a t² + 2 b t + c`, exactly.
-struct Equation {
-    a: Exact,
-    b: Exact,
-    c: Exact,
-    delta: Exact,
-}
-
-impl Equation {
-    fn new(ray: &Ray, sphere: &Sphere) -> Self {
-        let (w, d) = (minus(&vector(ray.origin()), &vector(sphere.center())), vector(ray.direction()));
-        let r = exact(sphere.radius());
-        let a = dot(&d, &d);
-        let b = dot(&w, &d);
-        let c = &dot(&w, &w) - &(&r * &r);
-        let delta = &(&b * &b) - &(&a * &c);
-        // Lagrange's identity, so that a slip in one form is seen in the other
-        let x = cross(&w, &d);
-        assert_eq!(delta.cmp(&(&(&a * &(&r * &r)) - &dot(&x, &x))), Ordering::Equal);
-        Self { a, b, c, delta }
-    }
-
-    /// Compares the near root (the far one if `far`) with `x`.
-    fn compare(&self, far: bool, x: &Exact) -> Ordering {
-        let slope = &(&self.a * x) + &self.b;
-        let value = &(&(&(&self.a * x) + &(&self.b + &self.b)) * x) + &self.c;
-        match (far, slope.sign()) {
-            (false, Ordering::Greater) => Ordering::Less,
-            (false, _) => value.sign(),
-            (true, Ordering::Less) => Ordering::Greater,
-            (true, _) => value.sign().reverse(),
-        }
-    }
-}
 
 /// Checks everything about one line and one sphere; returns the number of roots.
 fn check(origin: DVec3, direction: DVec3, center: DVec3, radius: f64, rng: &mut Rng) -> usize {

@@ -161,6 +161,8 @@ fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::Fallback;
+
     use super::super::Line;
     use super::super::newton::rounded;
     use super::*;
@@ -200,7 +202,9 @@ mod tests {
                             self.filter += 1;
                             return;
                         }
-                        Some(Some(place)) => rounded::<false>(sphere, ray, &crossing, &roots, place),
+                        Some(Some(place)) => {
+                            rounded::<false, _>(Fallback::new(), sphere, ray, &crossing, &roots, place)
+                        }
                         None => None,
                     }
                 }

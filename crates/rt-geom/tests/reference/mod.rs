@@ -3,6 +3,7 @@
 
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod sphere;
 pub(crate) mod triangle;
 
 use std::cmp::Ordering;
@@ -53,6 +54,10 @@ impl Exact {
 
     pub(crate) fn cmp(&self, other: &Self) -> Ordering {
         (self - other).sign()
+    }
+
+    pub(crate) fn abs(&self) -> Self {
+        if self.sign() == Ordering::Less { -self } else { self.clone() }
     }
 
     fn sum(&self, other: &Self, negate: bool) -> Self {
