@@ -20,8 +20,8 @@ use crate::Ray;
 use crate::ray::{cross, dot, holds, max_abs};
 
 /// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to `r`.
-const REST_ERROR: f64 = 512.0 * U * U;
-const SOLUTION_ERROR: f64 = 24.0 * U;
+const REST_ERROR: f64 = 136.0 * U * U;
+const SOLUTION_ERROR: f64 = 21.0 * U;
 
 fma_dispatch! {
     /// Returns the correctly rounded `t` of the hit, if it is between the ends of the range.
@@ -179,23 +179,37 @@ impl<'a> Refined<'a> {
         [dot::<FMA>(f, self.q), dot::<FMA>(self.rest, p), dot::<FMA>(d, self.q)].map(|x| x * self.inverse)
     }
 
+    /// The correction of `t`, with a bound of the error that is left.
+    #[inline(always)]
+    fn t_step<const FMA: bool>(&self) -> (f64, f64) {
+        let edge = self.crossing.edge;
+        (self.steps::<FMA>()[0], (edge * edge) * self.inverse.abs() * self.error)
+    }
+
+    /// The corrections of the weights, each with a bound of the error that is left.
+    #[inline(always)]
+    fn weight_steps<const FMA: bool>(&self) -> [(f64, f64); 3] {
+        let [_, beta, gamma] = self.steps::<FMA>();
+        let alpha = self.missing - (beta + gamma);
+        let error = 2.0 * (self.crossing.edge * self.ray.reach()) * self.inverse.abs() * self.error;
+        [(alpha, 2.5 * error), (beta, error), (gamma, error)]
+    }
+
     /// The correctly rounded `t`, if that is certain.
     #[inline(always)]
     pub(super) fn t<const FMA: bool>(&self) -> Option<f64> {
-        let edge = self.crossing.edge;
-        round_if_certain(self.t, self.steps::<FMA>()[0], (edge * edge) * self.inverse.abs() * self.error)
+        let (step, error) = self.t_step::<FMA>();
+        round_if_certain(self.t, step, error)
     }
 
     /// The correctly rounded weights, if all are certain.
     #[inline(always)]
     pub(super) fn weights<const FMA: bool>(&self) -> Option<[f64; 3]> {
-        let [_, beta, gamma] = self.steps::<FMA>();
-        let alpha = self.missing - (beta + gamma);
-        let error = 2.0 * (self.crossing.edge * self.ray.reach()) * self.inverse.abs() * self.error;
+        let [alpha, beta, gamma] = self.weight_steps::<FMA>();
         Some([
-            round_if_certain(self.weights[0], alpha, 2.5 * error)?,
-            round_if_certain(self.weights[1], beta, error)?,
-            round_if_certain(self.weights[2], gamma, error)?,
+            round_if_certain(self.weights[0], alpha.0, alpha.1)?,
+            round_if_certain(self.weights[1], beta.0, beta.1)?,
+            round_if_certain(self.weights[2], gamma.0, gamma.1)?,
         ])
     }
 
@@ -240,8 +254,12 @@ impl Crossing {
 
 #[cfg(test)]
 mod tests {
+    use std::cmp::Ordering;
+
     use super::*;
     use crate::ray::PreparedRay;
+    use crate::reference::triangle::Truth;
+    use crate::reference::{self, Exact, exact, minus};
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).
     fn random(state: &mut u64) -> f64 {
@@ -323,5 +341,66 @@ mod tests {
             }
         }
         assert!(hits > 1500 && first < hits / 2 && second > hits / 3, "{hits} {first} {second}");
+    }
+    /// `r`, the solutions for it, and what they leave of `t` and the weights: near the origin and far from it, down to rays that
+    /// nearly lie in the plane. Neither constant could be 2^7 times smaller, nor the bounds of a candidate.
+    #[test]
+    fn the_rest_and_the_steps_keep_their_bounds() {
+        let state = &mut 6;
+        let mut hits = 0;
+        for i in 0..24_000 {
+            let place = f64::from([0, 10, 1000][i % 3]) * vector(state);
+            let [a, b, c] = [0; 3].map(|_| place + vector(state));
+            let triangle = Triangle::new(a, b, c).unwrap();
+            let mut inside = || 0.4 * random(state).abs() * (b - a) + 0.4 * random(state).abs() * (c - a);
+            let (target, along) = (a + inside(), inside());
+            let lean = 2f64.powi(-i32::try_from(i % 24).unwrap()) * vector(state);
+            let ray = Ray::new(target - along - lean, along + lean).unwrap();
+            let Line::Hits(crossing) = triangle.line::<false>(&ray) else { continue };
+            let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
+            hits += 1;
+            let context = || format!("{triangle:?} {ray:?}");
+            let below = |x: Exact, bound: f64| x.abs().cmp(&exact(bound)) == Ordering::Less;
+
+            // The points in exact arithmetic, relative to the first vertex.
+            let (at, d) = (reference::vector(a), reference::vector(ray.direction()));
+            let [s, e, f] = [ray.origin(), b, c].map(|point| minus(&reference::vector(point), &at));
+            let [t, beta, gamma] = [refined.t, refined.weights[1], refined.weights[2]].map(exact);
+            for i in 0..3 {
+                let rest = &(&s[i] + &(&t * &d[i])) - &(&(&beta * &e[i]) + &(&gamma * &f[i]));
+                let bound = REST_ERROR * (max_abs(a) + crossing.size) + 2.1 * U * refined.rest[i].abs();
+                assert!(below(&rest - &exact(refined.rest[i]), bound), "rest: {}", context());
+            }
+
+            // Solving for the rest as computed: t' = -r . (e x f) / sum, β' = r . (d x f) / -sum, γ' = r . (e x d) / -sum.
+            let truth = Truth::new(&ray, &triangle);
+            let Crossing { edge, sum, .. } = crossing;
+            let (rest, n) = (reference::vector(refined.rest), reference::cross(&e, &f));
+            let length = refined.rest.x.abs() + refined.rest.y.abs() + refined.rest.z.abs();
+            let error = SOLUTION_ERROR * (ray.reach() * edge * edge / sum) * length;
+            let (step, t_error) = refined.t_step::<false>();
+            let left = &(&exact(step) * &truth.slope) + &reference::dot(&rest, &n);
+            assert!(below(left, edge * edge * error), "step of t: {}", context());
+            let weights = refined.weight_steps::<false>();
+            let normals = [reference::cross(&f, &d), reference::cross(&d, &e)];
+            for i in 0..2 {
+                let left = &(&exact(weights[i + 1].0) * &truth.slope) - &reference::dot(&rest, &normals[i]);
+                assert!(below(left, 2.0 * edge * ray.reach() * error), "step of a weight: {}", context());
+            }
+
+            // The corrected values; times the slope, which is the sum of the volumes.
+            let left = &(&(&t + &exact(step)) * &truth.slope) - &truth.height;
+            assert!(below(left, 1.01 * sum * t_error), "t: {}", context());
+            for i in 0..3 {
+                let corrected = &exact(refined.weights[i]) + &exact(weights[i].0);
+                let left = &(&corrected * &truth.slope) - &truth.volumes[i];
+                assert!(below(left, 1.01 * sum * weights[i].1), "weight {i}: {}", context());
+            }
+            let (low, high) = crossing.bounds(&ray);
+            let compare = |x: f64| (&exact(x) * &truth.slope).cmp(&truth.height);
+            let (low, high) = if truth.slope.sign() == Ordering::Less { (high, low) } else { (low, high) };
+            assert!(compare(low) == Ordering::Less && compare(high) == Ordering::Greater, "{}", context());
+        }
+        assert!(hits > 20_000, "{hits}");
     }
 }
