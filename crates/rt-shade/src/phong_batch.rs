@@ -1,11 +1,11 @@
 //! Phong's model for many points at once.
 //!
-//! Points go through the formulas of [`phong`] in groups of [`LANES`], operation by operation, without a branch, so that the
-//! compiler makes vector instructions of them. Every operation rounds as the same one in [`phong`] does, and so the bits are the same. What
-//! is out of the ordinary in a point (a length beyond 1e±100, a side or a rounding that needs exact integers, an odd
-//! shininess) makes its colour NaN on the way, and then [`phong`] itself answers.
+//! Points go through the formulas of [`phong`] in groups of [`LANES`], operation by operation, without a branch, so that
+//! the compiler makes vector instructions of them. Every operation rounds as the same one in [`phong`] does, and so the
+//! bits are the same. What is out of the ordinary in a point (a length beyond 1e±100, a side or a rounding that needs
+//! exact integers, an odd shininess) makes its colour NaN on the way, and then [`phong`] itself answers.
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Level;
 use glam::DVec3;
 use rt_math::exact::{dot_with_error, reflect_if_certain};
 
@@ -66,6 +66,7 @@ pub fn phong_batch(points: &[SurfacePoint], lights: &[PointLight], colors: &mut 
 fn shade_at(level: Level, points: &[SurfacePoint], lights: &[PointLight], colors: &mut [DVec3]) {
     #[cfg(target_arch = "x86_64")]
     {
+        use fearless_simd::Simd;
         if let Some(simd) = level.as_avx512() {
             return simd.vectorize(
                 #[inline(always)]
