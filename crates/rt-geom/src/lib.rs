@@ -4,6 +4,7 @@ mod enclosing;
 mod inside;
 mod plane;
 mod ray;
+mod simd;
 mod sphere;
 mod tree;
 mod triangle;

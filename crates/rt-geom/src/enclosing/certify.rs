@@ -11,6 +11,7 @@ use rt_math::exact::{self as scalar, Dyadic, two_prod};
 use super::basis::{Tangent, offset};
 use super::real::{Wide, dot};
 use crate::Sphere;
+use crate::simd::has_fma;
 
 /// Half the distance from 1 to the next double, the relative error of one rounded operation.
 pub(super) const U: f64 = f64::EPSILON / 2.0;
@@ -26,17 +27,6 @@ pub(super) struct Bracket {
     pub(super) low: f64,
     /// This double encloses them.
     pub(super) high: f64,
-}
-
-/// Whether the instructions of this level have a fused multiply-add.
-#[inline(always)]
-pub(super) fn has_fma<S: Simd>(simd: S) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return simd.level().as_avx2().is_some();
-    #[cfg(target_arch = "aarch64")]
-    return simd.level().as_neon().is_some();
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    return false;
 }
 
 /// `a + b` and its rounding error, exactly, lane by lane (Knuth).

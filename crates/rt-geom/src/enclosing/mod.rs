@@ -17,8 +17,6 @@ mod real;
 mod refine;
 mod stage;
 
-#[cfg(not(target_arch = "x86_64"))]
-use fearless_simd::dispatch;
 use fearless_simd::{Level, Simd};
 use glam::DVec3;
 

@@ -8,13 +8,14 @@
 use std::hint::black_box;
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Simd;
 
 use super::cull::{Line, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
 use super::{Hit, Shape, SphereTree};
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay};
+use crate::simd::has_fma;
 
 /// What a query did, for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,16 +44,10 @@ fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pendi
     u64::from(keys[lane]) << 32 | u64::from(children[lane].bits())
 }
 
-/// Whether the instruction set has the fused multiply-add; known when compiled.
-#[inline(always)]
-pub(super) fn fused<S: Simd>(simd: S) -> bool {
-    !matches!(simd.level(), Level::Fallback(_) | Level::Sse2(_) | Level::Sse4_2(_))
-}
-
 /// What a shape says of a ray, in the arithmetic of the instruction set.
 macro_rules! ask {
     ($simd:expr, $shape:expr, $method:ident($($argument:expr),*)) => {
-        if fused($simd) { $shape.$method::<true>($($argument),*) } else { $shape.$method::<false>($($argument),*) }
+        if has_fma($simd) { $shape.$method::<true>($($argument),*) } else { $shape.$method::<false>($($argument),*) }
     };
 }
 pub(super) use ask;
@@ -320,6 +315,8 @@ fn child(pending: Pending) -> Child {
 /// Asks for cache lines that are likely to be read soon.
 #[inline(always)]
 pub(super) fn prefetch_lines<T>(start: *const T, lines: usize) {
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (start, lines);
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
