@@ -7,13 +7,12 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rt_math::exact::{Dyadic, round_if_certain};
+use rt_math::exact::{DoubleDouble, Dyadic, round_if_certain};
+use rt_math::fma_dispatch;
 
 use crate::Triangle;
 use crate::ray::{larger, max_abs};
-use crate::triangle::exact::{
-    Number, cross, difference, dot, integer_cross, integer_difference, integer_dot,
-};
+use crate::triangle::exact::{cross, difference, dot, integer_cross, integer_difference, integer_dot};
 
 /// `2^-53`, the unit roundoff.
 const U: f64 = f64::EPSILON / 2.0;
@@ -127,7 +126,11 @@ fn certain_signs(turns: [f64; 3], error: f64, edge: f64, far: f64) -> Option<[Or
 }
 
 /// The turns and `n . n`, each within `640 u² edge³ far` and `640 u² edge⁴` (and underflow).
-fn double_double_turns(point: DVec3, triangle: &Triangle) -> ([Number; 3], Number) {
+#[inline(always)]
+fn double_double_turns<const FMA: bool>(
+    point: DVec3,
+    triangle: &Triangle,
+) -> ([DoubleDouble<FMA>; 3], DoubleDouble<FMA>) {
     let [a, b, c] = triangle.vertices();
     let n = cross(&difference(b, a), &difference(c, a));
     let turn = |from, to| dot(&n, &cross(&difference(to, from), &difference(point, from)));
@@ -136,24 +139,30 @@ fn double_double_turns(point: DVec3, triangle: &Triangle) -> ([Number; 3], Numbe
 
 #[cold]
 fn double_double_signs(point: DVec3, triangle: &Triangle) -> Option<[Ordering; 3]> {
-    let (turns, _) = double_double_turns(point, triangle);
+    let (turns, _) = double_double_turns::<false>(point, triangle);
     let (edge, far) = sizes(point, triangle);
     let error = 640.0 * U * U * (edge * edge * edge) * far + UNDERFLOW;
-    certain_signs(turns.map(Number::high), error, edge, far)
+    certain_signs(turns.map(DoubleDouble::high), error, edge, far)
 }
 
-fn double_double_weights(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> {
+fma_dispatch! {
+    /// The weights, correctly rounded, if double-double is certain of all.
+    fn double_double_weights(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> = double_double_weights_kernel;
+}
+
+#[inline(always)]
+fn double_double_weights_kernel<const FMA: bool>(point: DVec3, triangle: &Triangle) -> Option<[f64; 3]> {
     let (edge, far) = sizes(point, triangle);
     if !(edge < FARTHEST && far < FARTHEST) {
         return None;
     }
-    let (turns, square) = double_double_turns(point, triangle);
+    let (turns, square) = double_double_turns::<FMA>(point, triangle);
     let relative = 640.0 * U * U * (edge * edge * edge);
     let (turn_error, square_error) = (relative * far + UNDERFLOW, relative * edge + UNDERFLOW);
     if 8.0 * square_error > square.high() {
         return None;
     }
-    let weight = |turn: Number| {
+    let weight = |turn: DoubleDouble<FMA>| {
         let quotient = turn / square;
         let size = quotient.high().abs();
         let error = 1.2 * (turn_error + size * square_error) / square.high();

@@ -76,6 +76,32 @@ fn on_edges_and_vertices_and_above_them() {
     assert!(counts.iter().all(|&n| n > 400), "{counts:?}");
 }
 
+/// Rounding decides on which side of an edge the point is.
+#[test]
+fn within_a_rounding_error_of_an_edge() {
+    let counts = run(8, |rng| {
+        let place = rng.pick(&[0.0, 1.0, 100.0]) * rng.vector();
+        let vertices = [rng.vector(), rng.vector(), rng.vector()].map(|v| place + v);
+        let i = rng.below(3) as usize;
+        let point = vertices[i] + rng.uniform().abs() * (vertices[(i + 1) % 3] - vertices[i]);
+        (rng.nudge_vector(point, 1), vertices)
+    });
+    assert!(counts[0] > 1000 && counts[3] > 1000, "{counts:?}");
+}
+
+/// All in the plane z = x + 3 y, with products too long for a double.
+#[test]
+fn in_the_plane_exactly() {
+    run(9, |rng| {
+        let mut point = || {
+            let mut part = || f64::from(rng.below(1 << 25)) * 33_554_393.0 - 2f64.powi(49);
+            let (x, y) = (part(), part());
+            DVec3::new(x, y, x + 3.0 * y)
+        };
+        (point(), [point(), point(), point()])
+    });
+}
+
 #[test]
 fn slivers_and_triangles_without_area() {
     run(3, |rng| {

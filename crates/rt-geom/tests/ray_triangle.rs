@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 use reference::triangle::Truth;
-use reference::{Rng, cases, cross, dot, holds, is_rounded_quotient, minus, scale_vector, vector};
+use reference::{Rng, cases, cross, dot, holds, is_rounded_quotient, minus, scale, scale_vector, vector};
 use rt_geom::{Ray, Triangle, Verdict};
 
 fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Rng) -> Option<Verdict> {
@@ -164,6 +164,21 @@ fn without_area() {
     assert!(counts.degenerate > 1000, "{counts:?}");
 }
 
+/// Vertices on a line, exactly, although their differences are rounded.
+#[test]
+fn without_area_but_for_rounding() {
+    let counts = run(15, |rng| {
+        let along =
+            rng.pick(&[DVec3::new(1.0, 3.0, 5.0), DVec3::new(-3.0, 5.0, 7.0), DVec3::new(5.0, 1.0, -7.0)]);
+        // 49 bits, so that seven times as much is a double.
+        let vertices =
+            [0; 3].map(|_| scale(f64::from(rng.below(1 << 24)) * 33_554_393.0, -rng.below(8)) * along);
+        let origin = scale_vector(rng.vector(), 50);
+        (origin, vertices[0] - origin, vertices)
+    });
+    assert!(counts.degenerate > 9000, "{counts:?}");
+}
+
 /// The report's plane form does not exist for these.
 #[test]
 fn planes_through_the_origin() {
@@ -260,6 +275,19 @@ fn origin_in_the_triangle() {
         (if rng.bits() & 1 == 0 { origin } else { rng.nudge_vector(origin, 1) }, rng.vector(), vertices)
     });
     assert!(counts.interior > 1000 && counts.edge > 100, "{counts:?}");
+}
+
+/// Rounding decides on which side of the plane the ray starts.
+#[test]
+fn origin_within_a_rounding_error_of_the_triangle() {
+    let counts = run(16, |rng| {
+        let place = rng.pick(&[0.0, 1.0, 100.0]) * rng.vector();
+        let vertices = triangle(rng).map(|v| place + v);
+        let [a, b, c] = vertices;
+        let (v, w) = (0.5 * rng.uniform().abs(), 0.5 * rng.uniform().abs());
+        (rng.nudge_vector(a + v * (b - a) + w * (c - a), 1), rng.vector(), vertices)
+    });
+    assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
 }
 
 #[test]

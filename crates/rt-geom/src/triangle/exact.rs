@@ -14,21 +14,26 @@ use crate::ray::{holds, larger, max_abs};
 const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
 
 /// Cold stages need no FMA.
-pub(crate) type Number = DoubleDouble<false>;
-pub(crate) type Numbers = [Number; 3];
+type Number = DoubleDouble<false>;
+
+/// A vector in double-double.
+pub(crate) type Numbers<const FMA: bool> = [DoubleDouble<FMA>; 3];
 
 /// `p - q`, exactly.
-pub(crate) fn difference(p: DVec3, q: DVec3) -> Numbers {
-    [Number::difference(p.x, q.x), Number::difference(p.y, q.y), Number::difference(p.z, q.z)]
+#[inline(always)]
+pub(crate) fn difference<const FMA: bool>(p: DVec3, q: DVec3) -> Numbers<FMA> {
+    [0, 1, 2].map(|i| DoubleDouble::difference(p[i], q[i]))
 }
 
 /// `v x w`; component `i` is off by at most `15 u² (|v_j w_k| + |v_k w_j|)`.
-pub(crate) fn cross(v: &Numbers, w: &Numbers) -> Numbers {
+#[inline(always)]
+pub(crate) fn cross<const FMA: bool>(v: &Numbers<FMA>, w: &Numbers<FMA>) -> Numbers<FMA> {
     [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]]
 }
 
 /// `v . w`, off by at most `21 u²` times the sum of the magnitudes of its terms.
-pub(crate) fn dot(v: &Numbers, w: &Numbers) -> Number {
+#[inline(always)]
+pub(crate) fn dot<const FMA: bool>(v: &Numbers<FMA>, w: &Numbers<FMA>) -> DoubleDouble<FMA> {
     v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
 }
 
@@ -120,12 +125,6 @@ impl Volumes {
         [u.sign(), v.sign(), w.sign(), self.sum().sign()]
     }
 
-    /// `(b - a) x (c - a)`: the sum of the three planes' normals.
-    fn normal(&self) -> IntegerVector {
-        let [p, q, r] = &self.planes;
-        [0, 1, 2].map(|i| &p[i] + &q[i] + &r[i])
-    }
-
     /// Six times the volume that the triangle spans with the origin of the ray: `a . b x c`.
     fn height(&self) -> Integer {
         integer_dot(&self.planes[0], &self.vertices[0])
@@ -158,9 +157,8 @@ pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
     let turned = |volume: &Integer, v: &IntegerVector| {
         [volume, &v[0], &v[1], &v[2]].map(Integer::sign).into_iter().fold(Ordering::Equal, Ordering::then)
     };
-    let height = volumes.height().sign();
-    let slope = turned(&volumes.sum(), &volumes.normal());
-    // Height zero: the origin is in the plane, or there is no plane.
+    let (height, slope) = (volumes.height().sign(), volumes.sum().sign());
+    // Height zero: the origin is in the plane, or there is no plane. Slope zero: two of the volumes have opposite signs.
     height != Ordering::Equal
         && height == slope
         && (0..3).all(|i| turned(&volumes.volumes[i], &volumes.planes[i]) == slope)
@@ -186,7 +184,7 @@ pub(crate) fn is_degenerate(triangle: &Triangle) -> bool {
 /// Each component is off by at most `1.01 u` of the largest.
 pub(super) fn scaled_normal(triangle: &Triangle) -> Option<DVec3> {
     let [a, b, c] = triangle.vertices;
-    let (e, f) = (difference(b, a), difference(c, a));
+    let (e, f): (Numbers<false>, _) = (difference(b, a), difference(c, a));
     let n = DVec3::from_array(cross(&e, &f).map(Number::high));
     let largest = larger(max_abs(b - a), max_abs(c - a));
     // Here the error of the double-doubles, 32 u² largest², is below 2^-61 of the normal.

@@ -391,10 +391,10 @@ mod tests {
             // The corrected values; times the slope, which is the sum of the volumes.
             let left = &(&(&t + &exact(step)) * &truth.slope) - &truth.height;
             assert!(below(left, 1.01 * sum * t_error), "t: {}", context());
-            for i in 0..3 {
-                let corrected = &exact(refined.weights[i]) + &exact(weights[i].0);
+            for (i, (step, error)) in weights.into_iter().enumerate() {
+                let corrected = &exact(refined.weights[i]) + &exact(step);
                 let left = &(&corrected * &truth.slope) - &truth.volumes[i];
-                assert!(below(left, 1.01 * sum * weights[i].1), "weight {i}: {}", context());
+                assert!(below(left, 1.01 * sum * error), "weight {i}: {}", context());
             }
             let (low, high) = crossing.bounds(&ray);
             let compare = |x: f64| (&exact(x) * &truth.slope).cmp(&truth.height);
