@@ -12,7 +12,9 @@
 
 use fearless_simd::{Fallback, Level, Simd, f64x2, f64x4, kernel, prelude::*};
 use rt_math::Roots;
-use rt_math::exact::{has_fma, round_if_certain};
+#[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+use rt_math::exact::has_fma;
+use rt_math::exact::round_if_certain;
 
 use super::{Approximation, Crossing, Line, Place, Sphere, U, exact};
 use crate::Ray;
