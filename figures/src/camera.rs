@@ -185,16 +185,30 @@ impl View {
     ///
     /// For one sample per pixel and the report's camera its direction is `((2 (i + 1/2) / W - 1) W / H,
     /// 1 - 2 (j + 1/2) / H, -1)`, each component rounded once, since the numerators are whole numbers.
-    #[expect(clippy::missing_panics_doc, reason = "the direction is proved to be finite and not zero")]
     pub fn ray(&self, column: u32, row: u32) -> Ray {
+        self.ray_through(self.across(column), self.down(row))
+    }
+
+    /// Returns the ray through the cell where a column and a row meet, given as [`View::across`] and [`View::down`] do.
+    #[inline]
+    pub(crate) fn ray_through(&self, across: DVec3, down: DVec3) -> Ray {
+        // The three axes are perpendicular unit vectors, so a sum of them with `forward` is about 1 long at least.
+        Ray::new(self.camera.eye, across + down).expect("the eye is finite and the direction not zero")
+    }
+
+    /// Returns the direction to the centre of a column of cells, in the middle of the picture's height.
+    pub(crate) fn across(&self, column: u32) -> DVec3 {
         let Size { width, height, samples } = self.size;
         let (columns, rows) = (i64::from(width) * i64::from(samples), i64::from(height) * i64::from(samples));
         let x = (2 * i64::from(column) + 1 - columns) as f64 / rows as f64;
+        self.camera.forward + x * self.camera.half_height * self.camera.right
+    }
+
+    /// Returns what to add to it for the centre of a row of cells.
+    pub(crate) fn down(&self, row: u32) -> DVec3 {
+        let rows = i64::from(self.size.height) * i64::from(self.size.samples);
         let y = (rows - 2 * i64::from(row) - 1) as f64 / rows as f64;
-        let Camera { eye, forward, right, up, half_height, .. } = self.camera;
-        let direction = forward + x * half_height * right + y * half_height * up;
-        // The three axes are perpendicular unit vectors, so a sum of them with `forward` is about 1 long at least.
-        Ray::new(eye, direction).expect("the eye is finite and the direction not zero")
+        y * self.camera.half_height * self.camera.up
     }
 }
 

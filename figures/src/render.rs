@@ -150,6 +150,9 @@ fn paint_at(paint: &Paint, normal: DVec3) -> DVec3 {
 /// A thread's workspace for the rays of one tile.
 #[derive(Default)]
 struct Tile<'a> {
+    /// The directions to the columns of samples, and what to add to them for the rows.
+    across: Vec<DVec3>,
+    down: Vec<DVec3>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
     /// What the rays see, and in which colours, without those that see nothing.
@@ -164,11 +167,17 @@ impl<'a> Tile<'a> {
     fn trace(&mut self, renderer: &'a Renderer, view: &View, columns: Range<u32>, rows: Range<u32>) -> u64 {
         let samples = view.size().samples;
         self.rays.clear();
-        let pixels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
-        for (column, row) in pixels {
-            let parts = (0..samples).flat_map(|y| (0..samples).map(move |x| (x, y)));
-            let cells = parts.map(|(x, y)| (column * samples + x, row * samples + y));
-            self.rays.extend(cells.map(|(column, row)| view.ray(column, row)));
+        self.across.clear();
+        self.across
+            .extend((samples * columns.start..samples * columns.end).map(|column| view.across(column)));
+        for row in rows {
+            self.down.clear();
+            self.down.extend((samples * row..samples * (row + 1)).map(|row| view.down(row)));
+            for across in self.across.chunks_exact(samples as usize) {
+                for &down in &self.down {
+                    self.rays.extend(across.iter().map(|&across| view.ray_through(across, down)));
+                }
+            }
         }
         self.hits.clear();
         self.hits.resize(self.rays.len(), None);
