@@ -10,10 +10,8 @@
 //! of which the filter knows `sqrt(Delta)`, and that `t* - t` is small. A rounding test tells whether `t` and this step decide the
 //! last bit. `docs/numerics.md`, section 5, proves the bounds.
 
-use fearless_simd::{Fallback, Level, Simd, f64x2, f64x4, kernel, prelude::*};
+use fearless_simd::{Fallback, Simd, f64x2, f64x4, kernel, prelude::*};
 use rt_math::Roots;
-#[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-use rt_math::exact::has_fma;
 use rt_math::exact::round_if_certain;
 
 use super::{Approximation, Crossing, Line, Place, Sphere, U, exact};
@@ -51,17 +49,17 @@ macro_rules! lanes_dispatch {
             #[inline(never)]
             fn plain($($argument: $kind),*) -> $result {
                 #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-                if let Some(simd) = Level::new().as_sse2() {
+                if let Some(simd) = fearless_simd::Level::new().as_sse2() {
                     return sse2(simd, $($argument),*);
                 }
                 $kernel::<false, _>(Fallback::new(), $($argument),*)
             }
             #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-            if has_fma() && let Some(simd) = Level::new().as_avx2() {
+            if rt_math::exact::has_fma() && let Some(simd) = fearless_simd::Level::new().as_avx2() {
                 return avx2(simd, $($argument),*);
             }
             #[cfg(target_arch = "aarch64")]
-            if let Some(simd) = Level::new().as_neon() {
+            if let Some(simd) = fearless_simd::Level::new().as_neon() {
                 return neon(simd, $($argument),*);
             }
             plain($($argument),*)
