@@ -105,16 +105,17 @@ impl HalvingTree {
         let mut stack = vec![(0, self.len(), 0)];
         while let Some((first, end, node)) = stack.pop() {
             if end - first > 1 {
-                let Node { sphere, second } = self.nodes[node];
+                // (In place: reading in pairs what was just copied in pieces would wait for the memory.)
+                let Node { sphere, second } = &self.nodes[node];
                 if let Some(sphere) = sphere {
                     tests += 1;
                     let last = best.map_or(within.end, |hit| hit.t);
-                    if !meets_ball(&sphere, ray, within.start, last) {
+                    if !meets_ball(sphere, ray, within.start, last) {
                         continue;
                     }
                 }
                 let middle = first + (end - first) / 2;
-                stack.extend([(middle, end, second), (first, middle, node + 1)]);
+                stack.extend([(middle, end, *second), (first, middle, node + 1)]);
             } else if end > first {
                 tests += 1;
                 let t = match self.spheres.get(first) {
