@@ -77,7 +77,7 @@ pub(crate) fn enclosing_nodes(leaves: &[Sphere], nodes: &[Node]) -> Vec<Option<S
 
 /// A sphere that counts as beyond any limit.
 fn everything(center: DVec3) -> Sphere {
-    Sphere::new(center, f64::MAX).expect("finite")
+    Sphere::new(center, f64::MAX).expect("the center of a sphere is finite, as is the radius")
 }
 
 fn short(index: usize) -> u32 {

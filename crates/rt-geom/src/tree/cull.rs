@@ -50,7 +50,7 @@ pub(super) struct Line {
     ball_slack: f32,
     start: f32,
     end: f32,
-    /// The parameter of `t` is at most `t * length + offset`, rounded to the nearest f32.
+    /// The parameter of `t` is at most `t * length + last_offset`, rounded to the nearest f32.
     length: f64,
     last_offset: f64,
 }
