@@ -9,6 +9,7 @@ use super::certify::U;
 use super::few::{TOUCHES, pivot};
 use super::lanes::{LANES, Lanes, columns, marked, measure};
 use crate::Sphere;
+use crate::simd::prefetch_lines;
 
 /// Spheres to a block: enough to make skipping cheap, few enough to skip most blocks; and the lowest bits of a measure
 /// tell them apart.
@@ -22,6 +23,10 @@ const SAMPLE: usize = 32;
 
 /// Spheres to a run of the sample: enough for the memory's sake.
 const RUN: usize = 16;
+
+/// Of sets that no cache holds, what is so many spheres ahead is asked for now: two pages, which the processor's own
+/// prefetching does not cross.
+const AHEAD: usize = 256;
 
 /// Up to so many blocks are kept on the stack.
 const SMALL: usize = 64;
@@ -39,6 +44,8 @@ pub(super) struct Blocks<'a> {
     /// The length of the way that the center has come.
     way: f64,
     center: [f64; 3],
+    /// Whether the set is large: asking for blocks ahead pays.
+    large: bool,
 }
 
 /// Finds the support of a set of more than a handful of spheres, then calls `visit` with it and the blocks; `None` if
@@ -56,28 +63,39 @@ pub(super) fn support<S: Simd, T>(
     visit: impl FnOnce(Tangent<f64>, Blocks) -> T,
 ) -> Option<T> {
     let count = spheres.len().div_ceil(BLOCK);
+    let large = count > SMALL;
     let (mut few, mut many) = ([0.0; SMALL], Vec::new());
-    let bounds = if count <= SMALL {
-        &mut few[..count]
-    } else {
+    let bounds = if large {
         many.resize(count, 0.0);
         &mut many[..]
+    } else {
+        &mut few[..count]
     };
     let mut start = None;
-    if count > SMALL {
+    if large {
         let stride = RUN * SAMPLE;
         let bounds = &mut bounds[..spheres.len() / stride];
-        let mut sample = Blocks { spheres, origin, size: RUN, stride, bounds, way: 0.0, center: [0.0; 3] };
+        let mut sample = Blocks::new(spheres, origin, RUN, stride, bounds, large);
         // (Of a sample that is a single point nothing can be learned.)
         start = sample.rounds(simd, None);
     }
-    let mut blocks =
-        Blocks { spheres, origin, size: BLOCK, stride: BLOCK, bounds, way: 0.0, center: [0.0; 3] };
+    let mut blocks = Blocks::new(spheres, origin, BLOCK, BLOCK, bounds, large);
     let tangent = blocks.rounds(simd, start.as_ref())?;
     Some(visit(tangent, blocks))
 }
 
 impl<'a> Blocks<'a> {
+    fn new(
+        spheres: &'a [Sphere],
+        origin: DVec3,
+        size: usize,
+        stride: usize,
+        bounds: &'a mut [f64],
+        large: bool,
+    ) -> Self {
+        Self { spheres, origin, size, stride, bounds, way: 0.0, center: [0.0; 3], large }
+    }
+
     /// The support of all blocks, given that of some spheres.
     #[inline(never)]
     fn rounds<S: Simd>(&mut self, simd: S, start: Option<&Tangent<f64>>) -> Option<Tangent<f64>> {
@@ -91,8 +109,10 @@ impl<'a> Blocks<'a> {
     fn rounds_here<S: Simd>(&mut self, simd: S, start: Option<&Tangent<f64>>) -> Option<Tangent<f64>> {
         let (spheres, origin) = (self.spheres, self.origin);
         let mut tangent = start.copied();
-        let (mut center, mut radius) =
-            tangent.map_or_else(|| self.middle(simd), |tangent| tangent.sphere(spheres, origin));
+        let (mut center, mut radius) = match tangent {
+            Some(tangent) => tangent.sphere(spheres, origin),
+            None => self.middle(simd),
+        };
         self.bounds.fill(f64::INFINITY);
         self.center = center;
         for round in 0..MAX_ROUNDS {
@@ -114,7 +134,7 @@ impl<'a> Blocks<'a> {
             let mut these = [0; FEW];
             let support = tangent.as_ref().map_or(&[][..], Tangent::support);
             these[..support.len()].copy_from_slice(support);
-            for (slot, &(_, at)) in these[support.len()..].iter_mut().zip(&out.found[..out.count]) {
+            for (slot, &at) in these[support.len()..].iter_mut().zip(&out.places[..out.count]) {
                 *slot = at;
             }
             let these = &these[..support.len() + out.count];
@@ -137,6 +157,7 @@ impl<'a> Blocks<'a> {
         let mut low = [f64x8::splat(simd, f64::INFINITY); 3];
         let mut high = [f64x8::splat(simd, f64::NEG_INFINITY); 3];
         for block in 0..self.bounds.len() {
+            self.prefetch(block + AHEAD / self.size);
             let (eights, rest) = self.block(block).as_chunks::<LANES>();
             for eight in eights {
                 widen(&mut low, &mut high, &columns(simd, eight.each_ref(), self.origin));
@@ -146,8 +167,8 @@ impl<'a> Blocks<'a> {
                 widen(&mut low, &mut high, &columns(simd, eight, self.origin));
             }
         }
-        let low = low.map(|low| low.reduce_min());
-        let high = high.map(|high| high.reduce_max());
+        let low = [low[0].reduce_min(), low[1].reduce_min(), low[2].reduce_min()];
+        let high = [high[0].reduce_max(), high[1].reduce_max(), high[2].reduce_max()];
         let half: [f64; 3] = std::array::from_fn(|axis| 0.5 * (high[axis] - low[axis]));
         // Half of the largest half: some sphere reaches farther.
         (std::array::from_fn(|axis| low[axis] + half[axis]), 0.5 * half[0].max(half[1]).max(half[2]))
@@ -164,24 +185,50 @@ impl<'a> Blocks<'a> {
     fn scan<S: Simd>(&mut self, simd: S, center: [f64; 3], radius: f64) -> Out {
         self.go(center);
         let skip = self.skip(radius);
-        let square = radius * radius;
-        let touches = square * TOUCHES;
-        let widened = square * (1.0 + MEASURE_ERROR);
-        let mut out = Out { found: [(0.0, 0); FEW - 4], count: 0, least: 0, most: 0.0 };
-        for (block, bound) in self.bounds.iter_mut().enumerate() {
-            if *bound > skip {
-                let start = block * self.stride;
-                let end = self.spheres.len().min(start + self.size);
-                let (at, most) = farthest(simd, &self.spheres[start..end], self.origin, center, radius);
-                // The reach d + r with d² - (radius - r)² <= most: if that is negative it is largest for r = 0.
-                let reach = if most > 0.0 { f64::INFINITY } else { (widened + most).max(0.0).sqrt() };
-                *bound = reach - self.way;
-                if most > touches {
-                    out.add(most, start + at);
+        let touches = radius * radius * TOUCHES;
+        let widened = radius * radius * (1.0 + MEASURE_ERROR);
+        let mut out = Out::new();
+        let (mut ahead, mut lead) = (0, 0_usize);
+        let (way, origin, center) = (self.way, self.origin, self.center);
+        for block in 0..self.bounds.len() {
+            if self.bounds[block] <= skip {
+                continue;
+            }
+            if self.large {
+                lead = lead.saturating_sub(1);
+                while lead < AHEAD / self.size {
+                    while ahead < self.bounds.len() && self.bounds[ahead] <= skip {
+                        ahead += 1;
+                    }
+                    self.prefetch(ahead);
+                    ahead += 1;
+                    lead += 1;
                 }
+            }
+            let (at, most, largest) = farthest(simd, self.block(block), origin, center, radius);
+            // The reach d + r with d² - (radius - r)² <= most: if that is positive it grows with r, otherwise it is
+            // largest for r = 0.
+            let reach = if most > 0.0 {
+                let largest = largest.reduce_max();
+                let room = radius - largest;
+                (largest + (room * room + most).sqrt()) * (1.0 + REACH_ERROR)
+            } else {
+                (widened + most).max(0.0).sqrt()
+            };
+            self.bounds[block] = reach - way;
+            if most > touches {
+                out.add(simd, most, block * self.stride + at);
             }
         }
         out
+    }
+
+    /// Asks for a block that will be scanned soon, if there is one.
+    #[inline(always)]
+    fn prefetch(&self, block: usize) {
+        if self.large && block < self.bounds.len() {
+            prefetch_lines(&raw const self.spheres[block * self.stride], self.size / 2);
+        }
     }
 
     /// The stored number up to which a block has nothing beyond `limit`, rounding included.
@@ -208,14 +255,19 @@ impl<'a> Blocks<'a> {
         let skip = self.skip(limit);
         for (block, bound) in self.bounds.iter().enumerate() {
             if *bound > skip {
-                let start = block * self.stride;
-                let end = self.spheres.len().min(start + self.size);
-                let lanes =
-                    Lanes::<S, { BLOCK / LANES }>::new(simd, self.spheres[start..end].iter(), self.origin);
-                let mut found = lanes.beyond(simd, center, limit) & (u64::MAX >> (64 - (end - start)));
-                while found != 0 {
-                    visit(start + found.trailing_zeros() as usize);
-                    found &= found - 1;
+                for (i, eight) in self.block(block).chunks(LANES).enumerate() {
+                    let count = eight.len();
+                    let eight = std::array::from_fn(
+                        #[inline(always)]
+                        |i| eight.get(i).unwrap_or(&eight[0]),
+                    );
+                    let measure = measure(simd, &columns(simd, eight, self.origin), center, limit);
+                    let beyond = measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask();
+                    let mut found = beyond & (u64::MAX >> (64 - count));
+                    while found != 0 {
+                        visit(block * self.stride + LANES * i + found.trailing_zeros() as usize);
+                        found &= found - 1;
+                    }
                 }
             }
         }
@@ -224,35 +276,50 @@ impl<'a> Blocks<'a> {
 
 /// The spheres that stick out farthest, one of a block.
 struct Out {
-    /// The measures and the places.
-    found: [(f64, usize); FEW - 4],
+    measures: [f64; FEW],
+    places: [usize; FEW],
     count: usize,
-    /// The place of the least one in `found`.
+    /// Which has the least measure, once there is no more room.
     least: usize,
     /// The greatest measure; 0 if none is positive.
     most: f64,
 }
 
 impl Out {
-    fn add(&mut self, measure: f64, at: usize) {
+    /// A support is solved with them.
+    const ROOM: usize = FEW - 4;
+
+    #[inline(always)]
+    fn new() -> Self {
+        Self { measures: [f64::MAX; FEW], places: [0; FEW], count: 0, least: 0, most: 0.0 }
+    }
+
+    #[inline(always)]
+    fn add<S: Simd>(&mut self, simd: S, measure: f64, at: usize) {
         self.most = self.most.max(measure);
-        if self.count < self.found.len() {
-            self.found[self.count] = (measure, at);
+        let slot = if self.count < Self::ROOM {
             self.count += 1;
-        } else if measure > self.found[self.least].0 {
-            self.found[self.least] = (measure, at);
+            self.count - 1
+        } else if measure > self.measures[self.least] {
+            self.least
         } else {
             return;
-        }
-        if self.count == self.found.len() {
-            for (place, found) in self.found.iter().enumerate() {
-                if found.0 < self.found[self.least].0 {
-                    self.least = place;
-                }
+        };
+        (self.measures[slot], self.places[slot]) = (measure, at);
+        if self.count == Self::ROOM {
+            let mut least = f64x8::splat(simd, f64::MAX);
+            let mut place = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
+            for eight in self.measures.as_chunks::<LANES>().0 {
+                least = least.min(marked(f64x8::simd_from(simd, *eight), place));
+                place += LANES as u64;
             }
+            self.least = (least.reduce_min().to_bits() & 63) as usize;
         }
     }
 }
+
+/// Relative error bound of a reach from a measure that is positive: its marks and the rounding.
+const REACH_ERROR: f64 = 128.0 * U;
 
 /// Error bound of a measure that is not positive, as a share of the square of the radius: its marks and the rounding.
 const MEASURE_ERROR: f64 = 256.0 * U;
@@ -282,7 +349,7 @@ fn widen<S: Simd>(low: &mut [f64x8<S>; 3], high: &mut [f64x8<S>; 3], [x, y, z, r
     }
 }
 
-/// Which sphere of a block sticks out farthest of the one around `center`, and its [`measure`].
+/// Which sphere of a block sticks out farthest of the one around `center`, its [`measure`], and the largest radii.
 #[inline(always)]
 fn farthest<S: Simd>(
     simd: S,
@@ -290,23 +357,107 @@ fn farthest<S: Simd>(
     origin: DVec3,
     center: [f64; 3],
     radius: f64,
-) -> (usize, f64) {
+) -> (usize, f64, f64x8<S>) {
     let mut most = f64x8::splat(simd, f64::NEG_INFINITY);
     let mut lane = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
+    let mut largest = f64x8::splat(simd, 0.0);
     let (eights, rest) = block.as_chunks::<LANES>();
     for eight in eights {
-        let measure = measure(simd, &columns(simd, eight.each_ref(), origin), center, radius);
+        let columns = columns(simd, eight.each_ref(), origin);
+        let measure = measure(simd, &columns, center, radius);
+        largest = largest.max(columns[3]);
         // An infinite measure with a mark would be no number.
         most = most.max(marked(measure.min(f64x8::splat(simd, f64::MAX)), lane));
         lane += LANES as u64;
     }
     if let Some(first) = rest.first() {
         let eight = std::array::from_fn(|i| rest.get(i).unwrap_or(first));
-        let measure = measure(simd, &columns(simd, eight, origin), center, radius);
+        let columns = columns(simd, eight, origin);
+        let measure = measure(simd, &columns, center, radius);
+        largest = largest.max(columns[3]);
         most = most.max(marked(measure.min(f64x8::splat(simd, f64::MAX)), lane));
     }
     let most = most.reduce_max();
     // A lane beyond the end stands for the first of its eight.
     let at = (most.to_bits() & 63) as usize;
-    (if at < block.len() { at } else { at / LANES * LANES }, most)
+    (if at < block.len() { at } else { at / LANES * LANES }, most, largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::Fallback;
+
+    use super::super::certify::contains_exactly;
+    use super::*;
+
+    /// Blocks of spheres around the origin with radii made of numbers in 0..1.
+    fn blocks(radius: impl Fn(f64) -> f64) -> Vec<Sphere> {
+        let mut state = 5_u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 * (-53.0_f64).exp2()
+        };
+        (0..BLOCK * 50)
+            .map(|_| {
+                let center = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5);
+                Sphere::new(center, radius(unit())).unwrap()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn no_sphere_reaches_beyond_the_bound_of_its_block() {
+        // What `skip` allows for besides the bound.
+        const ALLOWED: f64 = 6.0 * U;
+        let simd = Fallback::new();
+        let small = |_: f64| 0.0;
+        let equal = |_: f64| 0.125;
+        let mixed = |unit: f64| 0.75 * unit * unit;
+        for (which, spheres) in [blocks(small), blocks(equal), blocks(mixed)].iter().enumerate() {
+            let (mut inside, mut outside) = (0, 0);
+            for round in 0..40 {
+                let center = DVec3::new(0.01 * f64::from(round), -0.02, 0.3);
+                let radius = 0.05 * f64::from(round + 1);
+                let mut bounds = vec![f64::INFINITY; spheres.len() / BLOCK];
+                let mut blocks = Blocks::new(spheres, DVec3::ZERO, BLOCK, BLOCK, &mut bounds, round % 2 == 0);
+                blocks.center = center.into();
+                let out = blocks.scan(simd, center.into(), radius);
+                for (block, &bound) in spheres.chunks(BLOCK).zip(&bounds) {
+                    for sphere in block {
+                        let bound = (bound * (1.0 + ALLOWED)).min(f64::MAX);
+                        assert!(contains_exactly(center, bound, sphere), "{center} {radius} {sphere:?}");
+                    }
+                    let reach = |s: &Sphere| (s.center() - center).length() + s.radius();
+                    let most = block.iter().map(reach).fold(0.0, f64::max);
+                    let sharp = bound < most * (1.0 + 1e-12);
+                    match which {
+                        // The bound is the reach, on both sides of the sphere.
+                        0 => assert!(sharp, "{bound} {most}"),
+                        // All radii are equal and below `radius`: it is the reach of those that stick out.
+                        1 if most > radius && radius > 0.125 => assert!(sharp, "{bound} {most}"),
+                        _ => {}
+                    }
+                    inside += usize::from(most < radius);
+                    outside += usize::from(most > radius);
+                }
+                assert_eq!(out.count > 0, out.most > 0.0);
+            }
+            assert!(inside > 300 && outside > 300, "{inside} {outside}");
+        }
+    }
+
+    #[test]
+    fn the_spheres_that_stick_out_farthest_are_kept() {
+        let simd = Fallback::new();
+        let mut out = Out::new();
+        let measures: Vec<f64> = (0..500_u32).map(|i| f64::from(i * 7919 % 500 + 1)).collect();
+        for (at, &measure) in measures.iter().enumerate() {
+            out.add(simd, measure, at);
+        }
+        let mut kept: Vec<f64> = out.places[..out.count].iter().map(|&at| measures[at]).collect();
+        kept.sort_by(f64::total_cmp);
+        let largest: Vec<f64> = (441..=500).map(f64::from).collect();
+        assert_eq!(kept, largest);
+        assert_eq!(out.most, 500.0);
+    }
 }

@@ -12,11 +12,11 @@ use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::cull::{Line, box_keys, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
-use super::walk::{Areas, Best, ask, prefetch_lines};
+use super::walk::{Areas, Best, ask};
 use super::{Hit, SphereTree};
 use crate::Ray;
 use crate::ray::PreparedRay;
-use crate::simd::has_fma;
+use crate::simd::{has_fma, prefetch_lines};
 
 /// Rays on their way at once.
 const FLIGHT: usize = 64;

@@ -15,7 +15,7 @@ use super::node::{Child, Kind, WIDTH};
 use super::{Hit, Shape, SphereTree};
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay};
-use crate::simd::has_fma;
+use crate::simd::{has_fma, prefetch_lines};
 
 /// What a query did, for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -310,24 +310,6 @@ fn walk<S: Simd>(
 #[expect(clippy::cast_possible_truncation, reason = "the child is the low half")]
 fn child(pending: Pending) -> Child {
     Child::from_bits(pending as u32)
-}
-
-/// Asks for cache lines that are likely to be read soon.
-#[inline(always)]
-pub(super) fn prefetch_lines<T>(start: *const T, lines: usize) {
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (start, lines);
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        for line in 0..lines {
-            #[expect(unsafe_code, reason = "the intrinsic takes a raw pointer")]
-            // SAFETY: a prefetch has no effect but on the caches, whatever the address.
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(64 * line));
-            }
-        }
-    }
 }
 
 /// Where children of each kind lie, to prefetch them without a branch.
