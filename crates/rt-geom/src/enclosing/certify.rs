@@ -183,7 +183,8 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
         let step = next - center;
         // The reaches at the next center: |v + e| is between |v| + u.e and that plus |e|² / 2|v|.
         let along = (dx * step.x + dy * step.y + dz * step.z) * reach.inverse;
-        let length = step.length();
+        // (At least the length, and sooner known.)
+        let length = step.abs().element_sum();
         let bend = reach.inverse * (length * length);
         let none = f64x4::splat(simd, 0.0);
         let still = f64x4::splat(simd, length).simd_eq(none);

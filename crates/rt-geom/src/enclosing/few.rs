@@ -8,14 +8,14 @@ use super::certify::U;
 use super::lanes::Lanes;
 use crate::Sphere;
 
-/// Turns the minimal sphere of some of the spheres at the places `these`, which are given as `lanes` too, into that of
-/// all of them: adds the sphere that sticks out farthest, until none does.
+/// Turns the minimal sphere of some of the spheres in `lanes` into that of all of them: adds the sphere that sticks out
+/// farthest, until none does. `place` tells from a lane the place in `spheres`.
 #[inline(never)]
 pub(super) fn pivot<S: Simd, const VECTORS: usize>(
     simd: S,
     tangent: &mut Tangent<f64>,
     lanes: &Lanes<S, VECTORS>,
-    these: &[usize],
+    place: impl Fn(usize) -> usize,
     spheres: &[Sphere],
     origin: DVec3,
 ) {
@@ -25,7 +25,7 @@ pub(super) fn pivot<S: Simd, const VECTORS: usize>(
             for _ in 0..MAX_PIVOTS {
                 let (center, radius) = tangent.sphere(spheres, origin);
                 let (lane, measure) = lanes.farthest(simd, center, radius);
-                let far = these[lane];
+                let far = place(lane);
                 if (measure <= radius * radius * TOUCHES) | tangent.has(far) {
                     break;
                 }

@@ -40,15 +40,21 @@ impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
         Self { vectors, used, count }
     }
 
-    /// A sphere that reaches far from the origin, and the largest `d² + r²`, up to the six lowest bits: the square of the
-    /// largest reach is between this and twice as much.
+    /// A sphere that reaches far from the mean of the centers, and the largest `d² + r²` there, up to the six lowest bits:
+    /// the square of the largest reach is between this and twice as much.
     #[inline(always)]
-    pub(super) fn farthest_from_origin(&self, simd: S) -> (usize, f64) {
+    pub(super) fn farthest_from_mean(&self, simd: S) -> (usize, f64) {
+        let mut sum = [f64x8::splat(simd, 0.0); 3];
+        for [x, y, z, _] in &self.vectors[..self.used] {
+            sum = [sum[0] + *x, sum[1] + *y, sum[2] + *z];
+        }
+        let share = 1.0 / (LANES * self.used) as f64;
+        let mean = [sum[0].reduce_sum() * share, sum[1].reduce_sum() * share, sum[2].reduce_sum() * share];
         let mut most = f64x8::splat(simd, 0.0);
         let mut lane = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
-        for [x, y, z, r] in &self.vectors[..self.used] {
+        for vector in &self.vectors[..self.used] {
             // An infinite number with a mark would be none.
-            let square = (*x * *x + *y * *y + (*z * *z + *r * *r)).min(f64x8::splat(simd, f64::MAX));
+            let square = measure(simd, vector, mean, 0.0).min(f64x8::splat(simd, f64::MAX));
             most = most.max(marked(square, lane));
             lane += LANES as u64;
         }

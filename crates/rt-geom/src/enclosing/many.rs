@@ -333,10 +333,10 @@ fn among<S: Simd>(simd: S, tangent: &mut Tangent<f64>, these: &[usize], spheres:
     let listed = these.iter().map(|&index| &spheres[index]);
     if these.len() <= 3 * LANES {
         let lanes = Lanes::<S, 3>::new(simd, listed, origin);
-        pivot(simd, tangent, &lanes, these, spheres, origin);
+        pivot(simd, tangent, &lanes, |lane| these[lane], spheres, origin);
     } else {
         let lanes = Lanes::<S, { FEW / LANES }>::new(simd, listed, origin);
-        pivot(simd, tangent, &lanes, these, spheres, origin);
+        pivot(simd, tangent, &lanes, |lane| these[lane], spheres, origin);
     }
 }
 

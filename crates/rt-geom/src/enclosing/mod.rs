@@ -139,12 +139,12 @@ fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<E
 fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
     let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
-    let (far, square) = lanes.farthest_from_origin(simd);
+    let (far, square) = lanes.farthest_from_mean(simd);
     if !ORDINARY_SQUARES.contains(&square) {
         return extreme(spheres);
     }
     let mut tangent = Tangent::single(far);
-    few::pivot(simd, &mut tangent, &lanes, &IN_ORDER[..spheres.len()], spheres, origin);
+    few::pivot(simd, &mut tangent, &lanes, |lane| lane, spheres, origin);
     let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
     // Who else is close enough to the boundary to stick out?
     let (center, limit) = near(&tangent, &bracket, spheres, origin);
@@ -167,16 +167,6 @@ fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Op
     }
     finish(spheres, &bracket, bound, tangent.support())
 }
-
-const IN_ORDER: [usize; 8 * LANES] = {
-    let mut order = [0; 8 * LANES];
-    let mut i = 0;
-    while i < order.len() {
-        order[i] = i;
-        i += 1;
-    }
-    order
-};
 
 /// More spheres than registers hold.
 #[inline(always)]
@@ -216,7 +206,7 @@ fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
 fn near(tangent: &Tangent<f64>, bracket: &Bracket, spheres: &[Sphere], origin: DVec3) -> ([f64; 3], f64) {
     let (center, _) = tangent.sphere(spheres, origin);
     let shift = (bracket.center - origin) - DVec3::from(center);
-    (center, (bracket.low - shift.length()) * (1.0 - 64.0 * U))
+    (center, (bracket.low - shift.abs().element_sum()) * (1.0 - 64.0 * U))
 }
 
 /// Whether the gap between the radius and its lower bound is more than what rounding the center to doubles costs.

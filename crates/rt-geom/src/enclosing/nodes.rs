@@ -196,7 +196,7 @@ impl Part<'_> {
             || {
                 let listed = these.iter().map(|&index| &self.leaves[index]);
                 let lanes = Lanes::<S, VECTORS>::new(simd, listed, origin);
-                let (far, square) = lanes.farthest_from_origin(simd);
+                let (far, square) = lanes.farthest_from_mean(simd);
                 (lanes, far, square)
             },
         );
@@ -205,7 +205,7 @@ impl Part<'_> {
         }
         let mut tangent = Tangent::single(these[far]);
         for _ in 0..MAX_ROUNDS {
-            pivot(simd, &mut tangent, &lanes, these, self.leaves, origin);
+            pivot(simd, &mut tangent, &lanes, |lane| these[lane], self.leaves, origin);
             let (center, radius) = self.sound(&tangent)?;
             let spacing = center.abs().max_element() * (4.0 * U);
             let (far, reach) = self.farthest(simd, node, center, radius, stack);
