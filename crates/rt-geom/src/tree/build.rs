@@ -14,9 +14,11 @@
 
 use std::ops::Range;
 
+use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*, u32x8};
 use glam::Vec4;
 
 use super::node::{Child, Kind, Node, WIDTH};
+use super::rank::{self, ascending};
 use crate::Sphere;
 use crate::enclosing::nodes::{self, enclosing_nodes};
 
@@ -107,7 +109,7 @@ impl Branch {
 /// Ranges longer than this are cut in parallel.
 const PARALLEL: usize = 4096;
 /// Ranges up to this length are sorted; longer ones are binned.
-const SORTED: usize = 128;
+const SORTED: usize = rank::MOST;
 const BINS: usize = 32;
 /// The binary tree is never deeper: where the best cuts would lead there, the range is halved.
 pub(super) const MAX_DEPTH: u32 = 64;
@@ -177,31 +179,30 @@ fn cut(items: &mut [Item], extent: &Extent, depth: u32) -> usize {
         items.select_nth_unstable_by(first, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
         return first;
     }
-    if items.len() <= SORTED { sorted_cut(items) } else { binned_cut(items, extent, spread) }
-}
-
-/// A float as an integer in the same order.
-fn ordered(x: f32) -> u32 {
-    let bits = x.to_bits();
-    bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 }
+    if items.len() <= SORTED { sorted_cut(items, extent, spread) } else { binned_cut(items, extent, spread) }
 }
 
 /// Tries every cut at a multiple of [`WIDTH`] along each axis.
-fn sorted_cut(items: &mut [Item]) -> usize {
+fn sorted_cut(items: &mut [Item], extent: &Extent, spread: Vec4) -> usize {
     let n = items.len();
     let leaves = n.div_ceil(WIDTH);
-    let mut orders = [[0u64; SORTED]; 3];
-    let mut best = (f32::INFINITY, 0, WIDTH);
-    for (axis, order) in orders.iter_mut().enumerate() {
-        let order = &mut order[..n];
-        for (i, (key, item)) in order.iter_mut().zip(&*items).enumerate() {
-            *key = u64::from(ordered(item.middle()[axis])) << 32 | i as u64;
+    // How far along each middle lies, in 23 bits, and its place in 7. Adding 2^23 rounds to an integer in the low bits.
+    let scale = scale(spread, 8_388_606.0);
+    let mut keys = [[0; SORTED]; 3];
+    for (place, item) in (0..).zip(&*items) {
+        let along = (item.middle() - extent.middles.low) * scale + 8_388_608.0;
+        for (keys, along) in keys.iter_mut().zip(along.truncate().to_array()) {
+            keys[place as usize] = along.to_bits() << 9 >> 2 | place;
         }
-        order.sort_unstable();
+    }
+    let orders = keys.map(|keys| ascending(&keys[..n]));
+    let mut best = (f32::INFINITY, 0, WIDTH);
+    for (axis, order) in orders.iter().enumerate() {
+        let order = &order[..n];
         let block = |range: Range<usize>| {
             let mut bounds = Bounds::EMPTY;
-            for key in &order[range] {
-                let item = &items[position(*key)];
+            for &place in &order[range] {
+                let item = &items[usize::from(place)];
                 bounds.add(item.low, item.high);
             }
             bounds
@@ -226,17 +227,11 @@ fn sorted_cut(items: &mut [Item]) -> usize {
     }
     let (_, axis, first) = best;
     let mut sorted = [Item { low: Vec4::ZERO, high: Vec4::ZERO }; SORTED];
-    for (item, key) in sorted.iter_mut().zip(&orders[axis][..n]) {
-        *item = items[position(*key)];
+    for (item, &place) in sorted.iter_mut().zip(&orders[axis][..n]) {
+        *item = items[usize::from(place)];
     }
     items.copy_from_slice(&sorted[..n]);
     first
-}
-
-/// The position in the low half of a sort key.
-#[expect(clippy::cast_possible_truncation, reason = "the low half is at most SORTED")]
-fn position(key: u64) -> usize {
-    (key & u64::from(u32::MAX)) as usize
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a weight of an estimate")]
@@ -252,6 +247,15 @@ struct Bin {
 
 type Bins = [[Bin; BINS]; 3];
 
+/// What makes `steps` of each side of `spread`.
+fn scale(spread: Vec4, steps: f32) -> Vec4 {
+    Vec4::from_array(spread.to_array().map(|s| {
+        // A spread so small that the quotient overflows counts as none.
+        let scale = steps / s;
+        if scale.is_finite() { scale } else { 0.0 }
+    }))
+}
+
 /// Which bin a middle falls into along each axis.
 #[derive(Clone, Copy)]
 struct Binning {
@@ -261,11 +265,7 @@ struct Binning {
 
 impl Binning {
     fn new(middles: &Bounds, spread: Vec4) -> Self {
-        let scale = Vec4::from_array(spread.to_array().map(|s| {
-            // A spread so small that the quotient overflows counts as none.
-            let scale = (BINS as f32 - 1.0) / s;
-            if scale.is_finite() { scale } else { 0.0 }
-        }));
+        let scale = scale(spread, BINS as f32 - 1.0);
         Self { low: middles.low, scale }
     }
 
@@ -294,16 +294,57 @@ fn fill_bins(items: &[Item], binning: Binning) -> Box<Bins> {
         }
         return a;
     }
+    dispatch!(Level::new(), simd => fill(simd, items, binning))
+}
+
+/// The four quarters go side by side: neighbours often share a bin, and each would wait for the one before.
+#[inline(always)]
+fn fill<S: Simd>(simd: S, items: &[Item], binning: Binning) -> Box<Bins> {
+    let empty = f32x8::splat(simd, f32::INFINITY);
+    // The least low and negated high corners.
+    let mut corners = [[empty; BINS]; 3];
+    let mut counts = [[0; BINS]; 3];
+    let quarter = items.len() / 4;
+    for i in 0..quarter {
+        add_to_bins(simd, &mut corners, &mut counts, &items[i], binning);
+        add_to_bins(simd, &mut corners, &mut counts, &items[quarter + i], binning);
+        add_to_bins(simd, &mut corners, &mut counts, &items[2 * quarter + i], binning);
+        add_to_bins(simd, &mut corners, &mut counts, &items[3 * quarter + i], binning);
+    }
+    for item in &items[4 * quarter..] {
+        add_to_bins(simd, &mut corners, &mut counts, item, binning);
+    }
     let mut bins = Box::new([[Bin { bounds: Bounds::EMPTY, count: 0 }; BINS]; 3]);
-    for item in items {
-        let places = binning.bins(item);
-        for (axis, place) in places.into_iter().enumerate() {
-            let bin = &mut bins[axis][place];
-            bin.bounds.add(item.low, item.high);
-            bin.count += 1;
+    for axis in 0..3 {
+        for place in 0..BINS {
+            let [a, b, c, d, e, f, g, h] = corners[axis][place].into();
+            let bounds = Bounds { low: Vec4::new(a, b, c, d), high: -Vec4::new(e, f, g, h) };
+            bins[axis][place] = Bin { bounds, count: counts[axis][place] };
         }
     }
     bins
+}
+
+#[inline(always)]
+fn add_to_bins<S: Simd>(
+    simd: S,
+    corners: &mut [[f32x8<S>; BINS]; 3],
+    counts: &mut [[usize; BINS]; 3],
+    item: &Item,
+    binning: Binning,
+) {
+    let [x, y, z] = binning.bins(item);
+    let ([a, b, c, d], [e, f, g, h]) = (item.low.to_array(), item.high.to_array());
+    let both: u32x8<S> = f32x8::simd_from(simd, [a, b, c, d, e, f, g, h]).bitcast();
+    let signs: u32x8<S> = f32x8::simd_from(simd, [0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0]).bitcast();
+    let both: f32x8<S> = (both ^ signs).bitcast();
+    // `min(new, old)`: in this order a NaN in an unused lane stays out of the others' way.
+    corners[0][x] = both.min(corners[0][x]);
+    corners[1][y] = both.min(corners[1][y]);
+    corners[2][z] = both.min(corners[2][z]);
+    counts[0][x] += 1;
+    counts[1][y] += 1;
+    counts[2][z] += 1;
 }
 
 /// Cuts between two bins, and moves at most eight items across so that the sides are multiples of [`WIDTH`].

@@ -5,6 +5,7 @@ mod build;
 mod cull;
 mod halving;
 mod node;
+mod rank;
 mod walk;
 
 use std::ops::Range;
