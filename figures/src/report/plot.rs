@@ -163,9 +163,12 @@ fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (l
             );
         }
     }
+    // Within a decade two or three lines would not tell that the axis is logarithmic.
+    let digits: &[f64] =
+        if high - low < 1.0 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0] } else { &[1.0, 2.0, 5.0] };
     let mut ticks: Vec<f64> = Vec::new();
     for decade in -1..8 {
-        ticks.extend([1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
+        ticks.extend(digits.iter().map(|digit| digit * 10f64.powi(decade)));
     }
     for tick in ticks.into_iter().filter(|tick| (low..high).contains(&tick.log10())) {
         let y = TOP + (bottom - TOP) * (high - tick.log10()) / (high - low);
