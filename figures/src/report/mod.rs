@@ -23,6 +23,7 @@ mod trees;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use rt_io::save_atomically;
 use serde::{Deserialize, Serialize};
 
 use crate::cli::Failure;
@@ -112,9 +113,10 @@ fn read(path: &Path) -> Result<Report, FileError> {
 
 fn write(report: &Report, folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| FileError::new(folder, error))?;
+    // Each file is whole at any time, also the one that the report was read from. The measurements come first: the rest
+    // can be made of them again.
     let save = |name: &str, bytes: &[u8]| -> Result<(), Failure> {
-        let path = folder.join(name);
-        fs::write(&path, bytes).map_err(|error| FileError::new(&path, error).into())
+        Ok(save_atomically(&folder.join(name), |out| out.write_all(bytes))?)
     };
     save("report.json", (serde_json::to_string_pretty(report)? + "\n").as_bytes())?;
     let blocks = document::blocks(report);
