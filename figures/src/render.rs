@@ -19,6 +19,9 @@ use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
 /// be worth a call.
 const TILE_WIDTH: u32 = 32;
 const TILE_HEIGHT: u32 = 8;
+/// The most rays of a tile, so that a thread's workspace is some 20 MB at most: with many samples in a pixel a tile is
+/// narrower.
+const TILE_RAYS: u32 = 1 << 16;
 
 /// The ray's own range: from its origin on, without end.
 pub(crate) const AHEAD: Range<f64> = 0.0..f64::INFINITY;
@@ -62,14 +65,15 @@ impl Renderer {
     pub fn rows(&self, view: &View, rows: Range<u32>, maxval: u16, advance: &(dyn Fn(u64) + Sync)) -> Rows {
         let Size { width, samples, .. } = view.size();
         let row_length = 3 * width as usize;
+        let tile_width = (TILE_RAYS / TILE_HEIGHT / samples / samples).clamp(1, TILE_WIDTH);
         let mut picture = vec![0; row_length * rows.len()];
         let hits = (rows.clone().into_par_iter().step_by(TILE_HEIGHT as usize))
             .zip(picture.par_chunks_mut(row_length * TILE_HEIGHT as usize))
             .map_init(Tile::default, |tile, (top, band)| {
                 let bottom = rows.end.min(top + TILE_HEIGHT);
                 let mut hits = 0;
-                for left in (0..width).step_by(TILE_WIDTH as usize) {
-                    let right = width.min(left + TILE_WIDTH);
+                for left in (0..width).step_by(tile_width as usize) {
+                    let right = width.min(left + tile_width);
                     hits += tile.trace(self, view, left..right, top..bottom);
                     for (tile_row, line) in tile
                         .pixels

@@ -207,6 +207,20 @@ fn a_report_that_meets_a_full_disk_keeps_what_it_was_read_from() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn many_samples_take_no_more_memory_than_one() {
+    let folder = folder();
+    let peak = |samples: &str| -> u64 {
+        let arguments = format!("3 --size 64x48 --threads 2 --samples {samples} --json --quiet -o a.ppm");
+        let output = command(PROGRAM, folder.path(), &arguments).output().unwrap();
+        let account: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        account["peak_memory_bytes"].as_u64().unwrap()
+    };
+    let (one, many) = (peak("1"), peak("40"));
+    assert!(many < one + (64 << 20), "{one} bytes with a sample in each pixel, {many} with 40 x 40");
+}
+
+#[test]
 fn a_folder_that_may_not_be_written_is_named_and_stays_as_it_was() {
     let folder = folder();
     let draw = "1 --size 8x6 -o picture.ppm";
