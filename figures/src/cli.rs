@@ -4,7 +4,7 @@
 //! 2: wrong usage.
 
 use std::error::Error;
-use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::io::{self, BufRead, BufWriter, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -13,9 +13,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
 use crate::generate::Rule;
-use crate::output::{Format, Target};
+use crate::output::{self, Format, Target};
 use crate::tile::Tile;
-use crate::{convert, draw, generate, report};
+use crate::{convert, draw, generate, report, stderr};
 
 /// The largest number of pixels in a picture: 1.5 GiB of samples.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -27,7 +27,8 @@ const MAX_SIDE: u32 = 1 << 20;
     name = "figures",
     version,
     about = "Draws the six figures of the report, and scenes of your own",
-    after_help = "Without an argument, asks for the number of the figure.",
+    after_help = "Without an argument, asks for the number of the figure.\n\
+                  Colors from 0 to 1 are stored as they are, those of a texture too: no gamma.",
     args_conflicts_with_subcommands = true,
     disable_help_subcommand = true
 )]
@@ -51,11 +52,11 @@ enum Command {
         #[command(flatten)]
         options: DrawOptions,
     },
-    /// Convert an image (PPM, PNG, JPEG, TIFF) to PPM
+    /// Convert an image (PPM, PNG, JPEG, TIFF) to PPM or PNG
     Convert {
         /// The image to read
         input: PathBuf,
-        /// The PPM to write, or `-` for stdout
+        /// The .ppm or .png to write, or `-` for stdout
         output: PathBuf,
         /// The format to write, if not by the ending of OUTPUT
         #[arg(long)]
@@ -69,7 +70,7 @@ enum Command {
     },
     /// Join the tiles of a picture
     Merge {
-        /// The picture to write, or `-` for stdout
+        /// The .ppm or .png to write, or `-` for stdout
         output: PathBuf,
         /// The tiles, in any order
         #[arg(required = true)]
@@ -126,7 +127,7 @@ enum Piece {
 /// How a picture is drawn and where it goes.
 #[derive(Args, Clone, Debug)]
 pub struct DrawOptions {
-    /// Where to: a file, a folder, or `-` for stdout [default: out/]
+    /// Where to: a .ppm or .png, a folder, or `-` for stdout [default: out/]
     #[arg(short, long, value_name = "FILE|DIR|-")]
     pub out: Option<PathBuf>,
     /// Columns and rows of the picture
@@ -138,7 +139,7 @@ pub struct DrawOptions {
     /// Take N x N samples in each pixel
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub samples: u32,
-    /// The format to write [default: by the ending of FILE, else ppm]
+    /// The format to write, whatever the name [default: by the ending of FILE, else ppm]
     #[arg(long)]
     pub format: Option<Format>,
     /// Bits per sample
@@ -233,6 +234,8 @@ pub enum Failure {
     Usage(String),
     /// Something went wrong; the causes are told one after the other.
     Failed(Box<dyn Error + Send + Sync>),
+    /// A check found these differences.
+    Different(Vec<String>),
     /// Whoever reads stdout has had enough.
     PipeClosed,
 }
@@ -245,11 +248,19 @@ impl<E: Error + Send + Sync + 'static> From<E> for Failure {
 
 /// Runs the program with the arguments it was started with.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() => {
+            stderr::tell_lines(&error.to_string());
+            return ExitCode::from(2);
+        }
+        // Not an error: help, or the version.
+        Err(help) => help.exit(),
+    };
     match run(arguments) {
         Ok(()) | Err(Failure::PipeClosed) => ExitCode::SUCCESS,
         Err(Failure::Usage(message)) => {
-            complain(&message);
+            stderr::tell(&format!("error: {message}"));
             ExitCode::from(2)
         }
         Err(Failure::Failed(error)) => {
@@ -263,15 +274,17 @@ pub fn main() -> ExitCode {
                 }
                 cause = error.source();
             }
-            complain(&message);
+            stderr::tell(&format!("error: {message}"));
+            ExitCode::FAILURE
+        }
+        Err(Failure::Different(differences)) => {
+            stderr::tell(&format!("error: {} differences from the stored report:", differences.len()));
+            for difference in differences {
+                stderr::tell(&difference);
+            }
             ExitCode::FAILURE
         }
     }
-}
-
-fn complain(message: &str) {
-    // Nobody is left to be told when stderr itself is gone.
-    let _ = writeln!(io::stderr(), "error: {message}");
 }
 
 fn run(arguments: Arguments) -> Result<(), Failure> {
@@ -300,7 +313,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
 
 impl Piece {
     fn write(&self, out: &Path) -> Result<(), Failure> {
-        let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
+        let ending = output::ending(out).unwrap_or_default();
         let (comment, balls) = match *self {
             Self::Knot { segments } => {
                 if !matches!(ending.as_str(), "" | "obj") {
@@ -351,8 +364,16 @@ fn ask() -> Result<Which, Failure> {
 /// # Errors
 /// [`Failure::PipeClosed`] if nobody reads it any more, else the failed write.
 pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
-    let mut stdout = io::stdout().lock();
-    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+    stream_to_stdout(|out| out.write_all(bytes))
+}
+
+/// Writes to stdout what `write` does.
+///
+/// # Errors
+/// As [`to_stdout`].
+pub fn stream_to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::PipeClosed),
         Err(error) => Err(Failure::Failed(format!("cannot write to stdout: {error}").into())),
         Ok(()) => Ok(()),

@@ -1,12 +1,12 @@
 //! Converts an image to PPM: takes the place of the report's script.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use rt_io::{Limits, read_image};
 
 use crate::cli::Failure;
 use crate::output::{Format, Target};
+use crate::stderr;
 
 /// Reads the image `input`, whatever its format, and writes it to `output`.
 ///
@@ -22,16 +22,16 @@ pub fn convert(
     maxval: Option<u16>,
     quiet: bool,
 ) -> Result<(), Failure> {
+    let target = Target::exactly(output);
+    let format = target.format(format)?;
     let image = read_image(input, &Limits::default())?;
     let pixmap = match maxval {
         Some(maxval) => image.pixmap.scaled(maxval),
         None => image.pixmap,
     };
-    let target = Target::exactly(output);
-    target.write(&pixmap, None, target.format(format))?;
+    target.write(&pixmap, None, format)?;
     if image.transparent && !quiet {
-        // A warning that nobody can read is no reason to fail.
-        let _ = writeln!(io::stderr(), "warning: {}: transparency was dropped", input.display());
+        stderr::tell(&format!("warning: {}: transparency was dropped", input.display()));
     }
     Ok(())
 }

@@ -1,6 +1,5 @@
 //! Draws scenes into files: loads, builds, traces, writes, and tells what that took.
 
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -15,11 +14,11 @@ use serde::Serialize;
 use crate::camera::{Size, View};
 use crate::cli::{DrawOptions, Failure, PictureSize, to_stdout};
 use crate::figure::Figure;
-use crate::output::{Format, Target};
+use crate::output::{Destination, Format, Target};
 use crate::render::{self, AHEAD, Renderer};
 use crate::scene::Scene;
 use crate::tile::{self, Label};
-use crate::{import, scene_file};
+use crate::{import, scene_file, stderr};
 
 /// Work that ends sooner than this shows no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -56,8 +55,11 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
     if folder && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("six pictures need a folder: --out DIR".to_owned()));
     }
+    let destination = destination(options, folder)?;
     let pool = pool(options)?;
-    figures.iter().try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), folder, options, &pool))
+    figures
+        .iter()
+        .try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), &destination, options, &pool))
 }
 
 /// Draws the scene file at `path`.
@@ -67,7 +69,7 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
 pub fn scene_file(path: &Path, options: &DrawOptions) -> Result<(), Failure> {
     let name =
         path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    draw(&name, || load(path), false, options, &pool(options)?)
+    draw(&name, || load(path), &destination(options, false)?, options, &pool(options)?)
 }
 
 /// Reads a scene file, or a bulk file on a stage.
@@ -78,10 +80,19 @@ fn load(path: &Path) -> Result<Scene, Failure> {
     }
 }
 
-fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
+/// Where the pictures go, and all that is wrong with the options before any work.
+fn destination(options: &DrawOptions, folder: bool) -> Result<Destination, Failure> {
     if options.json && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("--json and --out - both write to stdout; choose one".to_owned()));
     }
+    let destination = Destination::new(options.out.as_deref(), options.format, folder)?;
+    if options.tile.is_some() && destination.format() == Format::Png {
+        return Err(Failure::Usage("a tile is a PPM; merge can write PNG".to_owned()));
+    }
+    Ok(destination)
+}
+
+fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
     // 0: one thread for each core.
     Ok(ThreadPoolBuilder::new().num_threads(options.threads.map_or(0, usize::from)).build()?)
 }
@@ -89,7 +100,7 @@ fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
 fn draw(
     name: &str,
     load: impl FnOnce() -> Result<Scene, Failure> + Send,
-    folder: bool,
+    destination: &Destination,
     options: &DrawOptions,
     pool: &ThreadPool,
 ) -> Result<(), Failure> {
@@ -97,8 +108,7 @@ fn draw(
     let scene = pool.install(load)?;
     if !options.quiet {
         for warning in &scene.warnings {
-            // A warning that nobody can read is no reason to fail.
-            let _ = writeln!(io::stderr(), "warning: {warning}");
+            stderr::tell(&format!("warning: {warning}"));
         }
     }
     let (spheres, triangles) = (scene.spheres.len(), scene.triangles.len());
@@ -116,7 +126,7 @@ fn draw(
     if rows.is_empty() {
         // More tiles than rows: this one has nothing to do, and its absence leaves no gap.
         if !options.quiet {
-            let _ = writeln!(io::stderr(), "{name}: this tile has no rows, nothing is written");
+            stderr::tell(&format!("{name}: this tile has no rows, nothing is written"));
         }
         return Ok(());
     }
@@ -127,14 +137,9 @@ fn draw(
 
     // Made before the work, so that a folder that cannot be made is told at once.
     let name = options.tile.map_or_else(|| name.to_owned(), |tile| format!("{name}-{}", tile.suffix()));
-    let target = Target::new(options.out.as_deref(), &name, options.format, folder)?;
-    let format = target.format(options.format);
-    if label.is_some() && format == Format::Png {
-        return Err(Failure::Usage("a tile is a PPM; merge can write PNG".to_owned()));
-    }
-    let maxval = options.depth.maxval();
-    let progress = Progress::new(rows.len() as u64, options.quiet);
-    let band = rows.len();
+    let target = destination.target(&name)?;
+    let (format, maxval, band) = (destination.format(), options.depth.maxval(), rows.len());
+    let progress = Progress::new(band as u64, options.quiet);
     let render::Rows { samples, rays, hits } =
         pool.install(|| renderer.rows(&view, rows, maxval, &|rows| progress.advance(rows)));
     progress.finish();
@@ -148,8 +153,7 @@ fn draw(
 
     if !options.quiet && target != Target::Stdout {
         let seconds = (written - start).as_secs_f64();
-        // A note that nobody can read is no reason to fail.
-        let _ = writeln!(io::stderr(), "{}: {width} x {band} in {seconds:.2} s", target.name());
+        stderr::tell(&format!("{}: {width} x {band} in {seconds:.2} s", target.name()));
     }
     if options.json {
         let account = Account {
@@ -179,9 +183,9 @@ fn draw(
 /// # Errors
 /// What is wrong with the tiles, or why the picture could not be written.
 pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<Format>) -> Result<(), Failure> {
-    let pixmap = tile::merge(tiles)?;
     let target = Target::exactly(output);
-    target.write(&pixmap, None, target.format(format))
+    let format = target.format(format)?;
+    target.write(&tile::merge(tiles)?, None, format)
 }
 
 fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure> {

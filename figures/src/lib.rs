@@ -28,6 +28,7 @@ pub mod render;
 mod report;
 pub mod scene;
 pub mod scene_file;
+mod stderr;
 mod texture_file;
 pub mod tile;
 

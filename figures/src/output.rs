@@ -1,4 +1,4 @@
-//! Where a picture goes, and in which format.
+//! Where a picture goes, and in which format. What a name promises is written, or the name is refused.
 
 use std::fs;
 use std::io::{self, Write};
@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use rt_io::ppm::{self, Encoding};
 use rt_io::{Pixmap, png, save_atomically};
 
-use crate::cli::{Failure, to_stdout};
+use crate::cli::{Failure, stream_to_stdout};
 
 /// The format of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -30,13 +30,18 @@ impl Format {
         }
     }
 
-    /// The format that a file's ending asks for.
-    pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        match ending.as_str() {
-            "ppm" => Some(Self::Ppm),
-            "png" => Some(Self::Png),
-            _ => None,
+    /// The format that a file's name asks for, raw PPM where it asks for none.
+    ///
+    /// # Errors
+    /// Wrong usage: an [`ending`] of something that is not written here.
+    pub fn of(path: &Path) -> Result<Self, Failure> {
+        match ending(path).as_deref() {
+            None | Some("ppm") => Ok(Self::Ppm),
+            Some("png") => Ok(Self::Png),
+            Some(other) => Err(Failure::Usage(format!(
+                "{}: expected a name that ends in .ppm or .png, found .{other}; --format writes any name",
+                path.display()
+            ))),
         }
     }
 
@@ -52,7 +57,112 @@ impl Format {
     }
 }
 
-/// Where a picture goes.
+/// The ending of a file's name, in lower case: what follows its last dot, if it is made of ASCII letters and digits and not
+/// of digits alone.
+///
+/// So `run.1` and `step-0.25` have none, and a name is free to hold dots and numbers; `a.jpg`, `a.PNG` and `a.v2` have
+/// one. No list of the world's formats is needed to know that a name promises one.
+///
+/// ```
+/// use figures::output::ending;
+/// let of = |name: &str| ending(name.as_ref());
+/// assert_eq!(of("folder.d/a.PNG").as_deref(), Some("png"));
+/// assert_eq!((of("run.1"), of("folder.d/a"), of("a.")), (None, None, None));
+/// ```
+pub fn ending(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_string_lossy();
+    let (_, ending) = name.rsplit_once('.')?;
+    let plain = ending.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    let letters = ending.bytes().any(|byte| byte.is_ascii_alphabetic());
+    (plain && letters).then(|| ending.to_ascii_lowercase())
+}
+
+/// Refuses as a new folder what has the name of a file. A slash behind it says that a folder is meant.
+///
+/// # Errors
+/// Wrong usage, with the remedy.
+pub(crate) fn check_new_folder(folder: &Path) -> Result<(), Failure> {
+    match ending(folder) {
+        Some(ending) if !ends_in_slash(folder) && !folder.is_dir() => Err(Failure::Usage(format!(
+            "{}: expected a folder, found a name that ends in .{ending}; write {0}/ if it is to be a folder",
+            folder.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+fn ends_in_slash(path: &Path) -> bool {
+    path.as_os_str().as_encoded_bytes().ends_with(b"/")
+}
+
+/// Where the pictures of a command go and in which format, known from the command line alone, before any work.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Destination {
+    place: Place,
+    format: Format,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Place {
+    Stdout,
+    File(PathBuf),
+    Folder(PathBuf),
+}
+
+impl Destination {
+    /// Finds where pictures go when the user said `out`, and the format: the one asked for, else by the name, else PPM.
+    ///
+    /// `-` is stdout. A folder that exists and anything that ends in a slash is a folder; with `folder` so is any other
+    /// path.
+    ///
+    /// # Errors
+    /// Wrong usage: no format asked for, and a name that promises one that is not written, or a new folder with a name like a
+    /// file's.
+    pub fn new(out: Option<&Path>, format: Option<Format>, folder: bool) -> Result<Self, Failure> {
+        let out = out.unwrap_or(Path::new("out/"));
+        let place = if out == Path::new("-") {
+            Place::Stdout
+        } else if folder || ends_in_slash(out) || out.is_dir() {
+            Place::Folder(out.to_owned())
+        } else {
+            Place::File(out.to_owned())
+        };
+        let format = match (format, &place) {
+            (Some(format), _) => format,
+            (None, Place::File(path)) => Format::of(path)?,
+            (None, Place::Folder(path)) => {
+                check_new_folder(path)?;
+                Format::Ppm
+            }
+            (None, Place::Stdout) => Format::Ppm,
+        };
+        Ok(Self { place, format })
+    }
+
+    /// The format of the pictures.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// The target of the picture called `name`, which gives its name to a file in a folder. The folder is made.
+    ///
+    /// # Errors
+    /// A folder that cannot be made, named.
+    pub fn target(&self, name: &str) -> Result<Target, Failure> {
+        match &self.place {
+            Place::Stdout => Ok(Target::Stdout),
+            Place::File(path) => Ok(Target::File(path.clone())),
+            Place::Folder(folder) => {
+                fs::create_dir_all(folder).map_err(|error| {
+                    Failure::Failed(format!("cannot make folder {}: {error}", folder.display()).into())
+                })?;
+                Ok(Target::File(folder.join(format!("{name}.{}", self.format.ending()))))
+            }
+        }
+    }
+}
+
+/// Where one picture goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Standard output.
@@ -62,45 +172,21 @@ pub enum Target {
 }
 
 impl Target {
-    /// Finds where the picture called `name` goes when the user said `out`.
-    ///
-    /// `-` is stdout. A folder that exists, or anything that ends in a slash, takes `name` with the format's ending;
-    /// with `folder` so does any other path. Folders are made.
-    ///
-    /// # Errors
-    /// A folder that cannot be made, named.
-    pub fn new(
-        out: Option<&Path>,
-        name: &str,
-        format: Option<Format>,
-        folder: bool,
-    ) -> Result<Self, Failure> {
-        let out = out.unwrap_or(Path::new("out/"));
-        if out == Path::new("-") {
-            return Ok(Self::Stdout);
-        }
-        let slash = out.as_os_str().as_encoded_bytes().ends_with(b"/");
-        if !(folder || slash || out.is_dir()) {
-            return Ok(Self::File(out.to_owned()));
-        }
-        fs::create_dir_all(out).map_err(|error| {
-            Failure::Failed(format!("cannot make folder {}: {error}", out.display()).into())
-        })?;
-        Ok(Self::File(out.join(format!("{name}.{}", format.unwrap_or(Format::Ppm).ending()))))
-    }
-
     /// The target that the user named: `-` is stdout, anything else a file.
     pub fn exactly(out: &Path) -> Self {
         if out == Path::new("-") { Self::Stdout } else { Self::File(out.to_owned()) }
     }
 
-    /// The format to write: the one asked for, else by the ending, else PPM.
-    pub fn format(&self, asked: Option<Format>) -> Format {
-        let by_ending = match self {
-            Self::Stdout => None,
-            Self::File(path) => Format::of(path),
-        };
-        asked.or(by_ending).unwrap_or(Format::Ppm)
+    /// The format to write: the one asked for, else by the name, else PPM.
+    ///
+    /// # Errors
+    /// As [`Format::of`].
+    pub fn format(&self, asked: Option<Format>) -> Result<Format, Failure> {
+        match (asked, self) {
+            (Some(format), _) => Ok(format),
+            (None, Self::Stdout) => Ok(Format::Ppm),
+            (None, Self::File(path)) => Format::of(path),
+        }
     }
 
     /// Writes the picture, with a comment line in a PPM: a file appears whole or not at all.
@@ -114,14 +200,10 @@ impl Target {
     /// Writes whatever `write` does: a file appears whole or not at all.
     ///
     /// # Errors
-    /// What the system says, with the path.
+    /// What the system says, with the path; [`Failure::PipeClosed`] if nobody reads stdout any more.
     pub fn write_with(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
         match self {
-            Self::Stdout => {
-                let mut bytes = Vec::new();
-                write(&mut bytes)?;
-                to_stdout(&bytes)
-            }
+            Self::Stdout => stream_to_stdout(write),
             Self::File(path) => Ok(save_atomically(path, write)?),
         }
     }

@@ -141,6 +141,12 @@ fn without_an_argument_the_number_comes_from_stdin() {
 }
 
 #[test]
+fn the_help_states_formats_and_colors() {
+    let text = String::from_utf8(stdout(folder().path(), &["--help"])).unwrap();
+    assert!(text.contains(" .ppm or .png") && text.contains("no gamma"), "{text}");
+}
+
+#[test]
 fn list_names_the_six_figures() {
     let text = String::from_utf8(stdout(folder().path(), &["list"])).unwrap();
     assert_eq!(text.lines().count(), 6);
@@ -158,10 +164,110 @@ fn the_format_follows_the_ending_unless_it_is_named() {
     };
     assert_eq!(magic(&["-o", "a.ppm"], "a.ppm"), b"P6");
     assert_eq!(magic(&["-o", "a.png"], "a.png"), b"\x89P");
-    assert_eq!(magic(&["-o", "a.image"], "a.image"), b"P6");
+    assert_eq!(magic(&["-o", "a.PNG"], "a.PNG"), b"\x89P");
+    // What follows these dots is no ending.
+    assert_eq!(magic(&["-o", "run.1"], "run.1"), b"P6");
+    assert_eq!(magic(&["-o", "v2.0-final"], "v2.0-final"), b"P6");
+    assert_eq!(magic(&["-o", "no-ending"], "no-ending"), b"P6");
+    assert_eq!(magic(&["-o", "a.jpg", "--format", "png"], "a.jpg"), b"\x89P");
     assert_eq!(magic(&["-o", "b.png", "--format", "ppm-plain"], "b.png"), b"P3");
     assert_eq!(magic(&["-o", ".", "--format", "png"], "figure-1.png"), b"\x89P");
     assert_eq!(magic(&["-o", "folder/"], "folder/figure-1.ppm"), b"P6");
+}
+
+#[test]
+fn a_name_that_promises_what_is_not_written_is_refused_before_any_work() {
+    let folder = folder();
+    fs::write(folder.path().join("in.ppm"), b"P3 1 1 255 1 2 3").unwrap();
+    let endings = [
+        "jpg", "JPEG", "tif", "tiff", "gif", "bmp", "webp", "svg", "pdf", "exr", "hdr", "pgm", "pbm", "pnm",
+        "pam", "jp2", "avif", "html", "md", "json", "toml", "xyz", "obj", "txt", "csv", "zip", "gz", "image",
+        "7z",
+    ];
+    for ending in endings {
+        let name = format!("a.{ending}");
+        let expected = format!(
+            "error: {name}: expected a name that ends in .ppm or .png, found .{}; --format writes any name\n",
+            ending.to_ascii_lowercase()
+        );
+        // Neither the scene nor the images are read: they do not exist.
+        for arguments in [
+            &["1", "-o", &name][..],
+            &["render", "no.toml", "-o", &name],
+            &["1", "--tile", "1/2", "-o", &name],
+            &["convert", "no.png", &name],
+            &["merge", &name, "no.ppm"],
+        ] {
+            assert_eq!(refusal(folder.path(), arguments, "", 2), expected);
+        }
+        for arguments in [&["all", "-o", &name][..], &["report", "--from", "no.json", "-o", &name]] {
+            let expected = format!("error: {name}: expected a folder, found a name that ends in ");
+            assert!(refusal(folder.path(), arguments, "", 2).starts_with(&expected));
+        }
+        stdout(folder.path(), &["convert", "in.ppm", &name, "--format", "ppm"]);
+        assert_eq!(fs::read(folder.path().join(&name)).unwrap(), b"P6\n1 1\n255\n\x01\x02\x03");
+        fs::remove_file(folder.path().join(&name)).unwrap();
+    }
+    for ending in ["ppm", "png", "jpg", "stl", "md"] {
+        let name = format!("a.{ending}");
+        for piece in [&["spheres", "packed"][..], &["sphereflake"], &["knot"]] {
+            refusal(folder.path(), &[&["gen"], piece, &["-o", &name]].concat(), "", 2);
+        }
+        assert_eq!(
+            refusal(folder.path(), &["all", "-o", &name], "", 2),
+            format!(
+                "error: {name}: expected a folder, found a name that ends in .{ending}; write {name}/ if it is to be a \
+                 folder\n"
+            )
+        );
+    }
+    assert_eq!(files(folder.path()), ["in.ppm"]);
+
+    // A slash says what is meant, and so does a folder that is there.
+    for out in ["all.ppm/", "all.ppm"] {
+        stdout(folder.path(), &["all", "--size", "8x6", "-o", out, "--quiet"]);
+        assert_eq!(files(&folder.path().join("all.ppm")).len(), 6);
+    }
+    refusal(folder.path(), &["report", "-o", "-"], "", 2);
+}
+
+#[test]
+#[cfg(unix)]
+fn no_message_steers_the_terminal() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = folder();
+    let name = "a\u{1b}[31m\u{9b}2J\r\n\u{7f}\u{202e}";
+    let shown = r"a\u{1b}[31m\u{9b}2J\r\n\u{7f}\u{202e}";
+    let path = |ending: &str| folder.path().join(format!("{name}.{ending}"));
+    fs::write(path("toml"), "raduis = 1").unwrap();
+    fs::write(path("obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n").unwrap();
+    fs::write(path("png"), [PNG_HEAD, HALF_RED, PNG_END].concat()).unwrap();
+    let name = |ending: &str| format!("{name}.{ending}");
+    for (arguments, expected) in [
+        (vec!["render".to_owned(), name("toml")], format!("error: {shown}.toml:1:1: ")),
+        (vec!["render".to_owned(), name("missing")], format!("error: {shown}.missing: cannot read")),
+        (
+            vec!["render".to_owned(), name("obj"), "-o".to_owned(), "a.ppm".to_owned()],
+            format!("warning: {shown}.obj: "),
+        ),
+        (vec!["convert".to_owned(), name("png"), "a.ppm".to_owned()], format!("warning: {shown}.png: ")),
+        (vec!["4".to_owned(), "-o".to_owned(), name("ppm")], format!("{shown}.ppm: 1024 x 768 in ")),
+        (vec!["4".to_owned(), "-o".to_owned(), name("jpg")], format!("error: {shown}.jpg: expected")),
+        (vec![name("x")], "error: invalid value ".to_owned()),
+        (vec!["--size".to_owned(), name("x")], "error: invalid value ".to_owned()),
+    ] {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let said = String::from_utf8(run(folder.path(), &arguments, "").stderr).unwrap();
+        assert!(said.starts_with(&expected), "{arguments:?}: {said:?}");
+        let steers = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
+        assert!(!said.contains(steers), "{arguments:?}: {said:?}");
+    }
+    let odd = Command::new(env!("CARGO_BIN_EXE_figures"))
+        .args([OsStr::new("render"), OsStr::from_bytes(b"\xff\x1b[0m.toml")])
+        .output()
+        .unwrap();
+    assert!(!odd.stderr.contains(&b'\x1b') && odd.status.code() == Some(1), "{odd:?}");
 }
 
 #[test]

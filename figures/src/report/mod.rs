@@ -27,6 +27,7 @@ use rt_io::save_atomically;
 use serde::{Deserialize, Serialize};
 
 use crate::cli::Failure;
+use crate::output::check_new_folder;
 use machine::Machine;
 use markup::{Block, Picture};
 use measure::{Effort, Kernel};
@@ -74,13 +75,17 @@ const QUICK: Effort = Effort { cases: 128, rounds: 9, timing: 20_000, spheres: 1
 
 /// Measures, or reads what was measured, and writes or compares it.
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
+    if options.out == Path::new("-") {
+        return Err(Failure::Usage("a report is many files and needs a folder: --out DIR".to_owned()));
+    }
+    check_new_folder(&options.out)?;
     if let Some(path) = &options.check {
         let stored = read(path)?;
         if options.quick && stored.effort != QUICK {
             return Err(FileError::new(path, "was not measured with --quick").into());
         }
         let differences = check::differences(&stored, &Report::measure(stored.effort), options.factor);
-        return if differences.is_empty() { Ok(()) } else { Err(Different(differences).into()) };
+        return if differences.is_empty() { Ok(()) } else { Err(Failure::Different(differences)) };
     }
     let report = match &options.from {
         Some(path) => read(path)?,
@@ -149,11 +154,6 @@ impl FileError {
         Self { path: path.to_owned(), problem: problem.to_string() }
     }
 }
-
-/// What a check found.
-#[derive(Debug, thiserror::Error)]
-#[error("{} differences from the stored report:\n{}", .0.len(), .0.join("\n"))]
-struct Different(Vec<String>);
 
 #[cfg(test)]
 mod tests {
