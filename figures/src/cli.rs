@@ -12,10 +12,10 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
-use crate::generate::Rule;
+use crate::generate::{Ball, Rule};
 use crate::output::{self, Format, Target};
 use crate::tile::Tile;
-use crate::{convert, draw, generate, report, stderr};
+use crate::{convert, draw, generate, memory, report, stderr};
 
 /// The largest number of pixels in a picture: 1.5 GiB of samples.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -324,9 +324,13 @@ impl Piece {
                 return Target::exactly(out).write_with(|out| generate::write_knot(segments, out));
             }
             Self::Sphereflake { depth } => {
+                let (bytes, what) = (generate::sphereflake_memory(depth), format!("depth {depth}"));
+                memory::check(bytes, &what, "make fewer generations (--depth)")?;
                 (format!("sphereflake of depth {depth}"), generate::sphereflake(depth))
             }
             Self::Spheres { rule, count } => {
+                let bytes = u64::from(count) * size_of::<Ball>() as u64;
+                memory::check(bytes, &format!("{count} spheres"), "make fewer of them (--count)")?;
                 let name =
                     rule.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
                 (format!("{count} spheres, {name}"), generate::random(rule, count))

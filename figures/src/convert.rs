@@ -6,7 +6,7 @@ use rt_io::{Limits, read_image};
 
 use crate::cli::Failure;
 use crate::output::{Format, Target};
-use crate::stderr;
+use crate::{memory, stderr};
 
 /// Reads the image `input`, whatever its format, and writes it to `output`.
 ///
@@ -25,6 +25,12 @@ pub fn convert(
     let target = Target::exactly(output);
     let format = target.format(format)?;
     let image = read_image(input, &Limits::default())?;
+    let (width, height) = (image.pixmap.width(), image.pixmap.height());
+    let samples = 3 * width as u64 * height as u64;
+    let scaled = maxval.map_or(0, |maxval| if maxval <= 255 { samples } else { 2 * samples });
+    let written = format.memory_to_write(samples, maxval.unwrap_or(image.pixmap.maxval()));
+    let what = format!("{width} x {height} pixels");
+    memory::check(scaled + written, &what, "convert to PPM and keep the depth, which takes the least")?;
     let pixmap = match maxval {
         Some(maxval) => image.pixmap.scaled(maxval),
         None => image.pixmap,

@@ -18,7 +18,7 @@ use crate::output::{Destination, Format, Target};
 use crate::render::{self, AHEAD, Renderer};
 use crate::scene::Scene;
 use crate::tile::{self, Label};
-use crate::{import, scene_file, stderr};
+use crate::{import, memory, scene_file, stderr};
 
 /// Work that ends sooner than this shows no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -139,6 +139,7 @@ fn draw(
     let name = options.tile.map_or_else(|| name.to_owned(), |tile| format!("{name}-{}", tile.suffix()));
     let target = destination.target(&name)?;
     let (format, maxval, band) = (destination.format(), options.depth.maxval(), rows.len());
+    check_memory(width, band, maxval, format)?;
     let progress = Progress::new(band as u64, options.quiet);
     let render::Rows { samples, rays, hits } =
         pool.install(|| renderer.rows(&view, rows, maxval, &|rows| progress.advance(rows)));
@@ -186,6 +187,16 @@ pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<Format>) -> Result
     let target = Target::exactly(output);
     let format = target.format(format)?;
     target.write(&tile::merge(tiles)?, None, format)
+}
+
+/// Checks that there is memory for a picture while it is drawn and written.
+fn check_memory(width: u32, rows: usize, maxval: u16, format: Format) -> Result<(), Failure> {
+    let samples = 3 * u64::from(width) * rows as u64;
+    // It is drawn with two bytes a sample; where one is enough, they are copied then.
+    let (held, copy) = if maxval <= 255 { (samples, samples) } else { (2 * samples, 0) };
+    let bytes = (2 * samples + copy).max(held + format.memory_to_write(samples, maxval));
+    let what = format!("{width} x {rows} pixels");
+    memory::check(bytes, &what, "draw a smaller picture (--size) or bands of it (--tile)")
 }
 
 fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure> {

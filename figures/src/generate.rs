@@ -3,6 +3,7 @@
 //! The random ones come from one fixed seed, so the same name and size give the same file. Sphereflake: E. Haines,
 //! "A Proposal for Standard Graphics Environments", IEEE Computer Graphics and Applications 7(11), 1987.
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
@@ -53,9 +54,13 @@ pub fn write_xyz(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Resu
 /// What `out` reports.
 pub fn write_toml(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "# {comment}\n\nbackground = [0.05, 0.06, 0.08]\n\nsphere = [")?;
+    // The colours in order, and the place of each.
     let mut colors: Vec<DVec3> = Vec::new();
+    let mut places: HashMap<[u64; 3], usize> = HashMap::new();
     for Ball { center, radius, color } in balls {
-        let material = colors.iter().position(|known| known == color).unwrap_or_else(|| {
+        places.try_reserve(1).map_err(|_| io::ErrorKind::OutOfMemory)?;
+        colors.try_reserve(1).map_err(|_| io::ErrorKind::OutOfMemory)?;
+        let material = *places.entry(color.to_array().map(f64::to_bits)).or_insert_with(|| {
             colors.push(*color);
             colors.len() - 1
         });
@@ -92,7 +97,7 @@ pub fn sphereflake(depth: u32) -> Vec<Ball> {
         [(half_root, 0.5), (-half_root, 0.5), (0.0, -1.0)].map(|(x, y)| DVec3::new(low * x, low * y, high)),
     );
 
-    let mut balls = Vec::new();
+    let mut balls = Vec::with_capacity(flake_spheres(depth));
     // A sphere and its frame, whose z axis points away from the parent. The root's points up, turned a little to the eye.
     let mut level = vec![(DVec3::ZERO, frame(DVec3::new(0.15, 1.0, 0.45).normalize()))];
     let mut radius = 1.0;
@@ -107,11 +112,24 @@ pub fn sphereflake(depth: u32) -> Vec<Ball> {
                     (center + reach * outward, frame(outward))
                 })
             };
-            level = level.iter().flat_map(children).collect();
+            let mut next = Vec::with_capacity(9 * level.len());
+            next.extend(level.iter().flat_map(children));
+            level = next;
             radius /= 3.0;
         }
     }
     balls
+}
+
+/// How many spheres a sphereflake has.
+fn flake_spheres(depth: u32) -> usize {
+    (9_usize.pow(depth + 1) - 1) / 8
+}
+
+/// Bytes of memory that [`sphereflake`] takes: its spheres, and those of the last two generations once more with their frames.
+pub(crate) fn sphereflake_memory(depth: u32) -> u64 {
+    let frames = 9_usize.pow(depth) + 9_usize.pow(depth.saturating_sub(1));
+    (flake_spheres(depth) * size_of::<Ball>() + frames * size_of::<(DVec3, DMat3)>()) as u64
 }
 
 /// An orthonormal frame with this z axis, a unit vector.
@@ -172,13 +190,12 @@ pub fn random(rule: Rule, count: u32) -> Vec<Ball> {
             ];
             let sites =
                 places.flat_map(|place| basis.map(|offset| DVec3::from_array(place.map(f64::from)) + offset));
-            let mut balls: Vec<Ball> = sites
-                .take(count as usize)
-                .map(|site| {
-                    let jitter = 0.1 * DVec3::new(numbers.signed(), numbers.signed(), numbers.signed());
-                    ball((site + jitter) * cell - DVec3::new(1.0, 1.0, 4.0), 0.42 * cell)
-                })
-                .collect();
+            // As many as the sites are, which they do not tell beforehand.
+            let mut balls = Vec::with_capacity(count as usize);
+            balls.extend(sites.take(count as usize).map(|site| {
+                let jitter = 0.1 * DVec3::new(numbers.signed(), numbers.signed(), numbers.signed());
+                ball((site + jitter) * cell - DVec3::new(1.0, 1.0, 4.0), 0.42 * cell)
+            }));
             for last in (1..balls.len()).rev() {
                 balls.swap(last, numbers.below(last + 1));
             }

@@ -23,6 +23,7 @@ pub mod draw;
 pub mod figure;
 pub mod generate;
 pub mod import;
+mod memory;
 pub mod output;
 pub mod render;
 mod report;

@@ -45,6 +45,17 @@ impl Format {
         }
     }
 
+    /// Bytes of memory that [`Target::write`] takes for so many samples up to `maxval`, besides the picture itself.
+    pub(crate) fn memory_to_write(self, samples: u64, maxval: u16) -> u64 {
+        match (self, maxval) {
+            (Self::Ppm | Self::PpmPlain, _) => 0,
+            // What is compressed is gathered before it is written, in a vector that may hold twice as much.
+            (Self::Png, 0..=255) => 2 * samples,
+            // The same at twice the size, and the samples again as bytes.
+            (Self::Png, _) => 6 * samples,
+        }
+    }
+
     /// Writes the picture, with a comment line in a PPM.
     fn write(self, pixmap: &Pixmap, comment: Option<&str>, out: &mut dyn Write) -> io::Result<()> {
         match (self, comment) {

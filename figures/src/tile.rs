@@ -174,6 +174,18 @@ pub enum MergeError {
         /// The rows.
         rows: Range<u32>,
     },
+    /// The picture is larger than the memory.
+    #[error(
+        "cannot get {megabytes} MB of memory for {width} x {height} pixels; pnmcat -tb joins tiles in less"
+    )]
+    Memory {
+        /// What the joined samples take, in units of 10^6 bytes.
+        megabytes: u64,
+        /// Columns of the picture.
+        width: u32,
+        /// Rows of the picture.
+        height: u32,
+    },
     /// Rows that two tiles have.
     #[error("rows {}..{} are in {} and in {}", rows.start, rows.end, first.display(), second.display())]
     Overlap {
@@ -220,7 +232,11 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
     if let Some((end, start)) = ends.zip(starts).find(|(end, start)| end < start) {
         return Err(MergeError::Gap { rows: end..start });
     }
-    let mut samples = Vec::with_capacity(3 * width as usize * height as usize);
+    let count = 3 * u64::from(width) * u64::from(height);
+    let mut samples = Vec::new();
+    if !usize::try_from(count).is_ok_and(|count| samples.try_reserve_exact(count).is_ok()) {
+        return Err(MergeError::Memory { megabytes: (2 * count).div_ceil(1_000_000), width, height });
+    }
     for part in parts {
         samples.extend(part.pixmap.into_samples());
     }

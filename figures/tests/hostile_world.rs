@@ -208,6 +208,57 @@ fn a_report_that_meets_a_full_disk_keeps_what_it_was_read_from() {
 
 #[test]
 #[cfg(target_os = "linux")]
+fn a_lack_of_memory_that_can_be_foreseen_is_an_error() {
+    // A limit on addresses stands for a small machine: room for the program and a thread, and not for these.
+    let folder = folder();
+    let run = |arguments: &str| {
+        let script = format!(r#"ulimit -v 400000; exec "$0" {arguments}"#);
+        Command::new("sh").args(["-c", &script, PROGRAM]).current_dir(&folder).output().unwrap()
+    };
+    let remedy = "draw a smaller picture (--size) or bands of it (--tile)";
+    for (arguments, message) in [
+        (
+            "1 --size 16384x16384 --threads 1 -o a.ppm",
+            format!("cannot get 2416 MB of memory for 16384 x 16384 pixels; {remedy}"),
+        ),
+        (
+            "1 --size 8192x8192 --threads 1 --depth 16 -o a.png",
+            format!("cannot get 1611 MB of memory for 8192 x 8192 pixels; {remedy}"),
+        ),
+        (
+            "gen spheres packed --count 100000000 -o a.xyz",
+            "cannot get 5600 MB of memory for 100000000 spheres; make fewer of them (--count)".to_owned(),
+        ),
+        (
+            "gen sphereflake --depth 7 -o a.xyz",
+            "cannot get 812 MB of memory for depth 7; make fewer generations (--depth)".to_owned(),
+        ),
+    ] {
+        check_refusal(&run(arguments), &message);
+        assert!(names(folder.path()).is_empty(), "{arguments}: {:?}", names(folder.path()));
+    }
+
+    // A band needs less.
+    let output = run("1 --size 16384x16384 --threads 1 --tile 7/128 --quiet -o 7.ppm");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+
+    // Two bands that fit, and a whole that does not.
+    for (name, rows) in [("1.ppm", "0..2048"), ("2.ppm", "2048..4096")] {
+        let label = format!("figures 0.1.0 rows {rows} of 16384x4096 samples 1 scene 0");
+        let head = format!("P6\n# {label}\n16384 2048\n255\n");
+        fs::write(folder.path().join(name), &head).unwrap();
+        let file = fs::File::options().write(true).open(folder.path().join(name)).unwrap();
+        file.set_len(head.len() as u64 + 3 * 16384 * 2048).unwrap();
+    }
+    check_refusal(
+        &run("merge a.ppm 1.ppm 2.ppm"),
+        "cannot get 403 MB of memory for 16384 x 4096 pixels; pnmcat -tb joins tiles in less",
+    );
+    assert_eq!(names(folder.path()), ["1.ppm", "2.ppm", "7.ppm"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
 fn many_samples_take_no_more_memory_than_one() {
     let folder = folder();
     let peak = |samples: &str| -> u64 {
