@@ -47,16 +47,15 @@ pub enum CameraError {
 }
 
 impl Camera {
-    /// The camera for objects that come without one: along -z, moved so that everything is seen, with a field of view of
-    /// 28 degrees, so that things far from the middle are hardly stretched.
-    pub const STAGE: Self = Self {
-        eye: DVec3::ZERO,
-        forward: DVec3::NEG_Z,
-        right: DVec3::X,
-        up: DVec3::Y,
-        half_height: 0.249_328_002_843_180_7, // tan 14 degrees
-        fit: true,
-    };
+    /// Returns the camera for objects that come without one: it looks from the direction `from`, which is not upright, moves so
+    /// that everything is seen, and has a field of view of 28 degrees, so that things far from the middle are hardly
+    /// stretched.
+    ///
+    /// # Panics
+    /// If `from` is zero, not finite, or along the y axis.
+    pub fn stage(from: DVec3) -> Self {
+        Self::new(from, DVec3::ZERO, DVec3::Y, 28.0).expect("a direction that is not upright").fitted()
+    }
 
     /// Returns the camera at `eye` that sees `look_at` in the middle of the picture and `up` upwards, with the
     /// vertical field of view `fov` in degrees.
@@ -277,9 +276,12 @@ mod tests {
             (DVec3::new(2.0, 9.0, 51.0), 0.0),
         ];
         let turned = Camera::new(DVec3::X, DVec3::new(-3.0, 2.0, 9.0), DVec3::Y, 50.0).unwrap();
-        for (camera, width, height) in
-            [(Camera::default(), 64, 48), (Camera::STAGE, 48, 64), (turned, 10, 10), (turned, 500, 10)]
-        {
+        for (camera, width, height) in [
+            (Camera::default(), 64, 48),
+            (Camera::stage(DVec3::new(12.0, 9.0, 20.0)), 48, 64),
+            (turned, 10, 10),
+            (turned, 500, 10),
+        ] {
             let framed = camera.framed(balls.into_iter(), width, height).unwrap();
             let [right, up, forward] = framed.axes();
             // How far the balls keep from each of the four planes of the picture with its margin.

@@ -30,6 +30,7 @@ mod report;
 pub mod scene;
 pub mod scene_file;
 mod stderr;
+mod text;
 mod texture_file;
 pub mod tile;
 

@@ -12,6 +12,7 @@ use rt_shade::{Material, PointLight, Texture};
 use crate::camera::{Camera, Size, View};
 use crate::import::obj::Mesh;
 use crate::import::xyz::Spheres;
+use crate::text::file_name;
 
 /// Everything that a picture depends on, besides its size.
 #[derive(Debug)]
@@ -86,12 +87,18 @@ impl Scene {
         assert!(!self.triangles.iter().any(Triangle::is_degenerate));
     }
 
-    /// Adds spheres from a bulk file: all with the look at this position, or each in its own colour.
+    /// Adds spheres from the bulk file at `path`: all with the look at this position, or each in its own colour.
     ///
     /// # Errors
     /// More colours than can be numbered; the spheres are not added then.
-    pub fn add_spheres(&mut self, found: Spheres, look: Option<u32>) -> Result<(), TooManyColors> {
-        let Spheres { spheres, mut color_indices, colors } = found;
+    pub fn add_spheres(
+        &mut self,
+        found: Spheres,
+        look: Option<u32>,
+        path: &Path,
+    ) -> Result<(), TooManyColors> {
+        let Spheres { spheres, mut color_indices, colors, notes } = found;
+        self.warnings.extend(notes.into_iter().map(|note| format!("{}: {note}", file_name(path))));
         match look {
             Some(look) => color_indices.fill(look),
             None => {
@@ -120,10 +127,18 @@ impl Scene {
 
     /// Adds a mesh from the file at `path`, with the look at this position.
     pub fn add_mesh(&mut self, found: Mesh, look: u32, path: &Path) {
-        let Mesh { triangles, vertex_colors, flat } = found;
+        let Mesh { triangles, vertex_colors, flat, crossed, passed_over } = found;
+        let mut warn = |warning: String| self.warnings.push(format!("{}: {warning}", file_name(path)));
         if flat > 0 {
             let triangles = if flat == 1 { "triangle" } else { "triangles" };
-            self.warnings.push(format!("{}: left out {flat} {triangles} without area", path.display()));
+            warn(format!("left out {flat} {triangles} without area"));
+        }
+        if crossed > 0 {
+            let faces = if crossed == 1 { "face crosses itself" } else { "faces cross themselves" };
+            warn(format!("{crossed} {faces}; the triangles of such a face may overlap"));
+        }
+        if !passed_over.is_empty() {
+            warn(format!("passed over: {}", passed_over.join(", ")));
         }
         self.triangle_looks.resize(self.triangle_looks.len() + triangles.len(), look);
         if vertex_colors.iter().any(Option::is_some) || !self.vertex_colors.is_empty() {
@@ -134,20 +149,67 @@ impl Scene {
     }
 
     /// Sets a stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
+    ///
+    /// The camera is [`Camera::stage`]'s, from [`FROM`]. Objects that lie in one plane which is seen edge-on from there, or at a
+    /// slope below [`EDGE_ON`], are seen along the plane's normal, from the front or, where the plane runs from front to back,
+    /// from the right.
     pub fn set_stage(&mut self) {
         let (low, high) =
             self.balls().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
                 (low.min(center - radius), high.max(center + radius))
             });
         let (center, size) = (low.midpoint(high), (high / 2.0 - low / 2.0).length());
+        let from = self
+            .flat_normal(2.0 * size)
+            .filter(|normal| normal.dot(FROM).abs() < EDGE_ON * FROM.length())
+            // A normal so far from FROM has one of the two components.
+            .map_or(FROM, |normal| {
+                let sided = if normal.z.abs() >= EDGE_ON { normal.z } else { normal.x };
+                normal * sided.signum()
+            });
         self.background = DVec3::new(0.05, 0.06, 0.08);
-        self.camera = Camera::STAGE;
-        let lamp = |direction: [f64; 3], color: [f64; 3]| PointLight {
-            position: center + size * DVec3::from_array(direction),
+        self.camera = Camera::stage(from);
+        let [right, up, forward] = self.camera.axes();
+        let lamp = |[x, y, z]: [f64; 3], color: [f64; 3]| PointLight {
+            position: center + size * (x * right + y * up - z * forward),
             color: DVec3::from_array(color),
         };
         self.lights =
             vec![lamp([-4.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.22, 0.25, 0.32])];
+    }
+
+    /// The unit normal, on either side, of the plane that all objects lie in; `None` if there is none, or if they lie on a line.
+    ///
+    /// A plane is one for this purpose if nothing rises above it by more than [`FLAT`] of the objects' width, so that seen
+    /// edge-on they are at most a line. `size` is the diameter of all objects.
+    fn flat_normal(&self, size: f64) -> Option<DVec3> {
+        // The objects' width is at most their size: mostly this decides.
+        if self.spheres.iter().any(|sphere| sphere.radius() > FLAT * size) {
+            return None;
+        }
+        let start = self.balls().next()?.0;
+        // Within 0..=1 in magnitude, whatever the scale. What overflows compares with nothing.
+        let relative = |point: DVec3| point / size - start / size;
+        let farthest = |distance: &dyn Fn(DVec3) -> f64| {
+            let none = (DVec3::ZERO, 0.0);
+            self.balls().fold(none, |most, (center, _)| {
+                let at = relative(center);
+                let distance = distance(at);
+                if distance > most.1 { (at, distance) } else { most }
+            })
+        };
+        let (along, length) = farthest(&|at| at.length_squared());
+        let (across, width) = farthest(&|at| along.cross(at).length_squared());
+        // The width of the objects, times their length, which is at least a quarter.
+        let width = width.sqrt();
+        if !(length > 0.0 && width > NEEDLE) {
+            return None;
+        }
+        let normal = along.cross(across).normalize();
+        let height = FLAT * width;
+        let within =
+            |(center, radius): (DVec3, f64)| normal.dot(relative(center)).abs() + radius / size <= height;
+        self.balls().all(within).then_some(normal)
     }
 
     /// Returns a number that two different scenes hardly ever share: it tells tiles of one picture from another's.
@@ -209,6 +271,21 @@ impl Scene {
         Some(View::new(camera, size))
     }
 }
+
+/// Where a stage is seen from, relative to the middle: 31 degrees to the right of the front and 21 degrees above. A cube along the
+/// axes shows three sides, 20, 12 and 9 parts of 25 as large as they are.
+pub const FROM: DVec3 = DVec3::new(12.0, 9.0, 20.0);
+
+/// A plane of objects that is seen at less than this slope, the sine of 7.2 degrees, is seen along its normal instead.
+const EDGE_ON: f64 = 0.125;
+
+/// Objects that rise above a plane by no more than this part of their width are flat: one pixel of a picture as wide as the
+/// program's.
+const FLAT: f64 = 1.0 / 1024.0;
+
+/// Objects narrower than this part of their length lie on a line: the normal of a plane through them would be lost in the
+/// rounding of their coordinates.
+const NEEDLE: f64 = 1e-9;
 
 /// The mark of a colour among a scene's looks: positions from here on count colours, those below looks.
 pub const COLOR: u32 = 1 << 31;
@@ -280,4 +357,86 @@ pub enum Filter {
     Nearest,
     /// The weighted mean of the four nearest texels.
     Bilinear,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a stage looks at such objects from: the unit direction from the middle to the eye.
+    fn looks_from(triangles: &[[DVec3; 3]], spheres: &[(DVec3, f64)]) -> DVec3 {
+        let mut scene = Scene::empty();
+        scene.triangles = triangles.iter().map(|&[a, b, c]| Triangle::new(a, b, c).unwrap()).collect();
+        scene.spheres =
+            spheres.iter().map(|&(center, radius)| Sphere::new(center, radius).unwrap()).collect();
+        scene.set_stage();
+        // The lights turn with the camera: from the second, the first is to the left, above, and farther back.
+        let [right, up, forward] = scene.camera.axes();
+        let side = scene.lights[0].position - scene.lights[1].position;
+        if side.is_finite() && side != DVec3::ZERO {
+            assert!(side.dot(right) < 0.0 && side.dot(up) > 0.0 && side.dot(forward) < 0.0, "{side}");
+        }
+        -forward
+    }
+
+    /// Two triangles in the plane of two directions.
+    fn sheet(origin: DVec3, x: DVec3, y: DVec3) -> [[DVec3; 3]; 2] {
+        [[origin, origin + x, origin + y], [origin + x, origin + x + y, origin + y]]
+    }
+
+    fn is_near(found: DVec3, expected: DVec3) -> bool {
+        (found - expected.normalize()).length() < 1e-6
+    }
+
+    #[test]
+    fn solids_and_sheets_that_show_are_seen_from_the_stages_direction() {
+        let sheet = |x, y| sheet(DVec3::new(3.0, -1.0, 2.0), x, y).to_vec();
+        let sheets = [
+            sheet(DVec3::X, DVec3::Y),
+            sheet(DVec3::Y, DVec3::Z),
+            sheet(DVec3::Z, DVec3::X),
+            sheet(DVec3::X, DVec3::new(0.3, -0.5, 0.7)),
+            // Not flat, though each of its triangles is seen edge-on.
+            [sheet(FROM, DVec3::X), sheet(FROM, DVec3::Y)].concat(),
+        ];
+        for triangles in sheets {
+            assert!(is_near(looks_from(&triangles, &[]), FROM), "{triangles:?}");
+        }
+        assert!(is_near(looks_from(&[], &[(DVec3::ONE, 2.0)]), FROM));
+        assert!(is_near(looks_from(&[], &[(DVec3::ONE, 0.0)]), FROM));
+        assert!(is_near(looks_from(&sheet(FROM, DVec3::X), &[(DVec3::ZERO, 1.0)]), FROM));
+    }
+
+    #[test]
+    fn a_sheet_seen_edge_on_is_seen_along_its_normal() {
+        for (across, expected) in [
+            (DVec3::Y, DVec3::new(20.0, 0.0, -12.0)),
+            (DVec3::X, DVec3::new(0.0, -20.0, 9.0)),
+            (DVec3::Z, DVec3::new(9.0, -12.0, 0.0)),
+            (DVec3::new(1.0, 1.0, -3.0), FROM.cross(DVec3::new(-1.0, -1.0, 3.0))),
+        ] {
+            // From the front, or from the right where the sheet runs from front to back.
+            let side = if expected.normalize().z.abs() > EDGE_ON { expected.z } else { expected.x };
+            let expected = expected * side.signum();
+            for scale in [1.0, 1e-160, 1e150] {
+                for place in [DVec3::ZERO, DVec3::new(-7.0, 5.0, 4.0)] {
+                    let mut triangles = sheet(scale * place, scale * FROM, scale * 7.0 * across);
+                    for _ in 0..2 {
+                        let found = looks_from(&triangles, &[]);
+                        assert!(is_near(found, expected), "{across} {scale} {place}: {found} {expected}");
+                        // The same whatever comes first and however it turns.
+                        triangles.reverse();
+                        triangles.iter_mut().for_each(|triangle| triangle.reverse());
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_on_a_line_and_sizes_beyond_the_doubles_have_a_stage_too() {
+        let along = |k: f64| (k * FROM, 0.0);
+        assert!(is_near(looks_from(&[], &[along(0.0), along(1.0), along(3.0)]), FROM));
+        assert!(is_near(looks_from(&sheet(DVec3::ZERO, 5e306 * FROM, 5e306 * DVec3::Y), &[]), FROM));
+    }
 }

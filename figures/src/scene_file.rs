@@ -22,6 +22,7 @@ use crate::camera::Camera;
 use crate::figure::asset;
 use crate::import::{obj, xyz};
 use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene, TooManyColors};
+use crate::text::{Utf16, escaped, file_name, listed, meant, quoted, without_mark};
 use crate::texture_file;
 
 /// The largest scene file that is read. More spheres than fit belong into a bulk file.
@@ -44,6 +45,8 @@ enum Problem {
     Read(std::io::Error),
     #[error("not UTF-8 text; a scene file is TOML")]
     NotText,
+    #[error(transparent)]
+    Utf16(Utf16),
     #[error("larger than {} MiB; put the spheres into an XYZ file", MAX_BYTES >> 20)]
     TooLarge,
     #[error("{name} must be finite, found {found}")]
@@ -54,15 +57,15 @@ enum Problem {
     NotPositive { name: &'static str, found: f64 },
     #[error("{name} must be three numbers from 0 to 1, found {found}")]
     NoColor { name: &'static str, found: String },
-    #[error("material {name:?} is not defined; {known}")]
+    #[error("material {} is not defined; {known}", quoted(name))]
     UnknownMaterial { name: String, known: String },
-    #[error("material {0:?} has neither a color nor a texture")]
+    #[error("material {} has neither a color nor a texture", quoted(.0))]
     NoPaint(String),
-    #[error("material {0:?} has both a color and a texture; keep one")]
+    #[error("material {} has both a color and a texture; keep one", quoted(.0))]
     TwoPaints(String),
     #[error("{0} is for a material with a texture")]
     NoTexture(&'static str),
-    #[error("a triangle cannot have a texture, and material {0:?} has one")]
+    #[error("a triangle cannot have a texture, and material {} has one", quoted(.0))]
     TexturedTriangle(String),
     #[error("a triangle needs a material or colors")]
     BareTriangle,
@@ -72,7 +75,7 @@ enum Problem {
     Camera(crate::camera::CameraError),
     #[error(transparent)]
     Texture(rt_io::ReadImageError),
-    #[error("{0} is not part of the program")]
+    #[error("{} is not part of the program", escaped(.0))]
     NotEmbedded(String),
     #[error(transparent)]
     Spheres(xyz::XyzError),
@@ -271,7 +274,7 @@ enum Files<'a> {
 /// # Errors
 /// Whatever is wrong with the file or the files that it names, with its place.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
-    let name = path.display().to_string();
+    let name = file_name(path);
     let refuse = |problem| SceneError { place: name.clone(), problem: Box::new(problem) };
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(|error| refuse(Problem::Read(error)))?;
@@ -279,8 +282,9 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(refuse(Problem::TooLarge));
     }
-    let text = String::from_utf8(bytes).map_err(|_| refuse(Problem::NotText))?;
-    parse(&text, &name, Files::Folder(path.parent().unwrap_or(Path::new(""))))
+    let bytes = without_mark(&bytes).map_err(|error| refuse(Problem::Utf16(error)))?;
+    let text = str::from_utf8(bytes).map_err(|_| refuse(Problem::NotText))?;
+    parse(text, &name, Files::Folder(path.parent().unwrap_or(Path::new(""))))
 }
 
 /// Reads a scene that is part of the program; it may name no files but those that are part of it too.
@@ -306,6 +310,7 @@ impl Checker<'_> {
     fn scene(&self) -> Result<Scene, SceneError> {
         let table: SceneTable = toml::from_str(self.text).map_err(|error| {
             let message = error.message().trim().replace('\n', ", ").replace('`', "\"");
+            let message = escaped(&message).into_owned();
             self.refuse(error.span().unwrap_or(0..0), Problem::Syntax(message))
         })?;
         let mut scene = Scene::empty();
@@ -433,10 +438,11 @@ impl Checker<'_> {
             radius: radius.as_ref().map(|radius| self.not_negative("radius", radius)).transpose()?,
             colored: look.is_none(),
         };
-        let found = xyz::load(&self.path(file)?, options);
+        let path = self.path(file)?;
+        let found = xyz::load(&path, options);
         let found = found.map_err(|error| self.refuse(file.span(), Problem::Spheres(error)))?;
         scene
-            .add_spheres(found, look)
+            .add_spheres(found, look, &path)
             .map_err(|error| self.refuse(file.span(), Problem::TooManyColors(error)))
     }
 
@@ -513,12 +519,11 @@ impl Checker<'_> {
 
     fn material(&self, materials: &BTreeMap<&str, u32>, name: &Spanned<String>) -> Result<u32, SceneError> {
         materials.get(name.get_ref().as_str()).copied().ok_or_else(|| {
-            let known = match materials.len() {
-                0 => "no material is".to_owned(),
-                _ => {
-                    let names: Vec<String> = materials.keys().map(|name| format!("{name:?}")).collect();
-                    format!("there is {}", names.join(", "))
-                }
+            let names = || materials.keys().copied();
+            let known = match (materials.len(), meant(name.get_ref(), names())) {
+                (0, _) => "no material is".to_owned(),
+                (_, Some(meant)) => format!("did you mean {}?", quoted(meant)),
+                _ => format!("there is {}", listed(materials.keys().copied())),
             };
             self.refuse(name.span(), Problem::UnknownMaterial { name: name.get_ref().clone(), known })
         })

@@ -13,11 +13,15 @@ const SCENES: [&str; 4] = [
     include_str!("../../tests/fuzz/seeds/scene/phong.toml"),
     include_str!("../../tests/fuzz/seeds/scene/texture.toml"),
 ];
-const SPHERES: [&str; 2] = [
+const SPHERES: [&str; 3] = [
+    include_str!("../../tests/fuzz/seeds/xyz/labels.xyz"),
     include_str!("../../tests/fuzz/seeds/xyz/plain.xyz"),
     include_str!("../../tests/fuzz/seeds/xyz/extended.xyz"),
 ];
-const MESHES: [&str; 1] = [include_str!("../../tests/fuzz/seeds/obj/square.obj")];
+const MESHES: [&str; 2] = [
+    include_str!("../../tests/fuzz/seeds/obj/square.obj"),
+    include_str!("../../tests/fuzz/seeds/obj/notched.obj"),
+];
 
 /// One of the files with one to four changes: a byte replaced, taken out, or some text put in.
 fn mutated(files: &'static [&'static str]) -> impl Strategy<Value = Vec<u8>> {

@@ -6,14 +6,111 @@
 
 use glam::DVec3;
 
-/// Returns the position of the element in the table: by its symbol in any case, or by its atomic number.
-pub(crate) fn find(name: &[u8]) -> Option<u8> {
-    let number = if name.first()?.is_ascii_digit() {
-        std::str::from_utf8(name).ok()?.parse::<usize>().ok()?.checked_sub(1)?
-    } else {
-        ELEMENTS.iter().position(|(symbol, ..)| symbol.as_bytes().eq_ignore_ascii_case(name))?
+/// What a name stands for: the position in the table, which is the atomic number, 0 for a dummy atom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Found {
+    /// A symbol or an atomic number, as expected.
+    Plain(u8),
+    /// A label, read by a rule that could be wrong about it.
+    Label(u8),
+}
+
+/// Finds what a name stands for. `docs/scene-format.md` has the rule for those who write files:
+///
+/// 1. A number is the atomic number.
+/// 2. Else the first run of letters counts. As a whole and in any case it is a symbol, `D` or `T`, or names a dummy atom.
+/// 3. In capitals alone or small letters alone, two to four: the first two are the symbol if there is one, else the first.
+///    Here `CA`, `CD1`, `HG2`, which look like a position in a protein, are their first letter; so are they under 2, but for
+///    a name of no more than the two letters and an element up to uranium.
+/// 4. With a capital first: the symbol of two letters before another capital; of two letters that are no symbol, the first.
+///
+/// Two letters look like a position in a protein where the first is H, or one of C, N, O, S with A, B, D, E, G, H or Z, for the
+/// Greek letters.
+pub(crate) fn find(name: &[u8]) -> Option<Found> {
+    if name.first()?.is_ascii_digit() && name.iter().all(u8::is_ascii_digit) {
+        let number = std::str::from_utf8(name).ok()?.parse::<u8>().ok()?;
+        return match usize::from(number) {
+            0 => Some(Found::Label(0)),
+            n if n < ELEMENTS.len() => Some(Found::Plain(number)),
+            _ => None,
+        };
+    }
+    let start = name.iter().position(|byte| !byte.is_ascii_digit())?;
+    let letters = &name[start..];
+    let length = letters.iter().position(|byte| !byte.is_ascii_alphabetic()).unwrap_or(letters.len());
+    let letters = &letters[..length];
+    let bare = length == name.len();
+    let small = |at: usize| letters.get(at).is_some_and(u8::is_ascii_lowercase);
+    let capital = |at: usize| letters.get(at).is_some_and(u8::is_ascii_uppercase);
+    let protein = |letters: &[u8]| match letters.to_ascii_uppercase()[..] {
+        [b'H', _] => true,
+        [b'C' | b'N' | b'O' | b'S', b'A' | b'B' | b'D' | b'E' | b'G' | b'H' | b'Z'] => true,
+        _ => false,
     };
-    u8::try_from(number).ok().filter(|&number| usize::from(number) < ELEMENTS.len())
+    let one_case = (0..length).all(capital) || (0..length).all(small);
+    if let Some(element) = by_symbol(letters) {
+        match (bare, one_case && protein(letters)) {
+            (true, false) => return Some(Found::Plain(element)),
+            (false, true) => {}
+            // SG is sulfur's position and not seaborgium.
+            (true, true) if element > HEAVIEST => {}
+            _ => return Some(Found::Label(element)),
+        }
+    }
+    if [&b"D"[..], b"T"].iter().any(|isotope| letters.eq_ignore_ascii_case(isotope)) {
+        return Some(if bare { Found::Plain(1) } else { Found::Label(1) });
+    }
+    if DUMMIES.iter().any(|dummy| letters.eq_ignore_ascii_case(dummy.as_bytes())) {
+        return Some(Found::Label(0));
+    }
+    let first = || by_symbol(&letters[..1]);
+    let element = if one_case && (2..=4).contains(&length) {
+        by_symbol(&letters[..2]).filter(|_| !protein(&letters[..2])).or_else(first)
+    } else if capital(0) && small(1) && capital(2) {
+        by_symbol(&letters[..2])
+    } else if capital(0) && small(1) && length == 2 {
+        first()
+    } else {
+        None
+    };
+    element.map(Found::Label)
+}
+
+/// Uranium: whatever is heavier is not in a molecule.
+const HEAVIEST: u8 = 92;
+
+/// Names of points that are no atoms: of unknown kind, of centers, of ghosts, of lone pairs and other sites of charge.
+const DUMMIES: [&str; 10] = ["X", "XX", "DU", "DUM", "Q", "BQ", "EP", "LP", "M", "MW"];
+
+/// The element with this symbol of one or two letters, in any case.
+fn by_symbol(letters: &[u8]) -> Option<u8> {
+    let place = |letter: &u8| usize::from(letter.to_ascii_uppercase().wrapping_sub(b'A'));
+    let (first, second) = match letters {
+        [first] => (place(first), 0),
+        [first, second] => (place(first), 1 + place(second)),
+        _ => return None,
+    };
+    SYMBOLS.get(first)?.get(second).copied().filter(|&element| element != 0)
+}
+
+/// The element for each first letter and second letter, from 1; no second letter is 0. No element is 0.
+const SYMBOLS: [[u8; 27]; 26] = {
+    let mut symbols = [[0; 27]; 26];
+    let mut number = 1;
+    while number < ELEMENTS.len() {
+        let symbol = ELEMENTS[number].0.as_bytes();
+        let second = if symbol.len() == 1 { 0 } else { symbol[1] - b'a' + 1 };
+        #[expect(clippy::cast_possible_truncation, reason = "there are 118 elements")]
+        let element = number as u8;
+        symbols[(symbol[0] - b'A') as usize][second as usize] = element;
+        number += 1;
+    }
+    symbols
+};
+
+/// What an element that [`find`] gave is called in messages.
+pub(crate) fn symbol(element: u8) -> &'static str {
+    ELEMENTS[usize::from(element)].0
 }
 
 /// The van der Waals radius in angstrom of an element that [`find`] gave.
@@ -27,9 +124,10 @@ pub(crate) fn color(element: u8) -> DVec3 {
     DVec3::new(red.into(), green.into(), blue.into()) / 255.0
 }
 
-/// Symbol, radius in angstrom, colour as 0xRRGGBB; in the order of the atomic number.
+/// Symbol, radius in angstrom, colour as 0xRRGGBB; in the order of the atomic number. A dummy atom is small and grey.
 #[rustfmt::skip]
-const ELEMENTS: [(&str, f64, u32); 118] = [
+const ELEMENTS: [(&str, f64, u32); 119] = [
+    ("a dummy atom", 0.5, 0x808080),
     ("H", 1.20, 0xffffff), ("He", 1.43, 0xd9ffff), ("Li", 2.12, 0xcc80ff), ("Be", 1.98, 0xc2ff00),
     ("B", 1.91, 0xffb5b5), ("C", 1.77, 0x909090), ("N", 1.66, 0x3050f8), ("O", 1.50, 0xff0d0d),
     ("F", 1.46, 0x90e050), ("Ne", 1.58, 0xb3e3f5), ("Na", 2.50, 0xab5cf2), ("Mg", 2.51, 0x8aff00),
@@ -66,31 +164,102 @@ const ELEMENTS: [(&str, f64, u32); 118] = [
 mod tests {
     use super::*;
 
+    fn number(name: &str) -> Option<u8> {
+        find(name.as_bytes()).map(|(Found::Plain(number) | Found::Label(number))| number)
+    }
+
     #[test]
-    fn elements_are_found_by_symbol_and_number() {
-        for (name, number) in
-            [("H", 1), ("C", 6), ("c", 6), ("Cl", 17), ("CL", 17), ("8", 8), ("U", 92), ("118", 118)]
-        {
-            assert_eq!(find(name.as_bytes()), Some(number - 1), "{name}");
+    fn symbols_and_numbers_are_plain() {
+        for (name, number) in [
+            ("H", 1),
+            ("C", 6),
+            ("c", 6),
+            ("Cl", 17),
+            ("CL", 17),
+            ("8", 8),
+            ("U", 92),
+            ("118", 118),
+            ("D", 1),
+        ] {
+            assert_eq!(find(name.as_bytes()), Some(Found::Plain(number)), "{name}");
         }
-        for name in ["", "X", "Xx", "CA1", "0", "119", "400", "1.5", "99999999999999999999"] {
-            assert_eq!(find(name.as_bytes()), None, "{name}");
+        for name in ["", "119", "400", "1.5", "99999999999999999999", "-1", "Å", "\0", "'"] {
+            assert_eq!(number(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn labels_are_read_by_the_rule() {
+        let (h, c, n, o, s, cl, ca) = (1, 6, 7, 8, 16, 17, 20);
+        for (name, expected) in [
+            ("OW", o),
+            ("HW1", h),
+            ("HW2", h),
+            ("C1", c),
+            ("Ow", o),
+            ("hw", h),
+            ("O2-", o),
+            ("C.ar", c),
+            ("H_", h),
+            ("13C", c),
+            ("2H", h),
+            ("D2", h),
+            ("1HB", h),
+            ("HO2'", h),
+            ("OXT", o),
+            ("NZ", n),
+            ("CB", c),
+            ("CG1", c),
+            ("CD1", c),
+            ("HG1", h),
+            ("NE2", n),
+            ("CE1", c),
+            ("SG1", s),
+            ("CA1", c),
+            ("CAA", c),
+            ("SG", s),
+            ("OG", o),
+            ("Ca", ca),
+            ("CA", ca),
+            ("Ca2+", ca),
+            ("CaA", ca),
+            ("CL1", cl),
+            ("CLA", cl),
+            ("Cl1", cl),
+            ("FE1", 26),
+            ("Fe3+", 26),
+            ("Na+", 11),
+            ("X", 0),
+            ("X1", 0),
+            ("Xx", 0),
+            ("Du", 0),
+            ("Q", 0),
+            ("Bq", 0),
+            ("MW", 0),
+            ("0", 0),
+        ] {
+            assert_eq!(number(name), Some(expected), "{name}");
+            let plain = name == "Ca";
+            assert_eq!(matches!(find(name.as_bytes()), Some(Found::Plain(_))), plain, "{name}");
+        }
+        for name in ["Qq", "Carbon", "Unobtainium", "Jx", "ZZ", "Rq7", "WATER", "Cab", "1e5", "x3y", "_C"] {
+            let expected = (name == "x3y").then_some(0);
+            assert_eq!(number(name), expected, "{name}");
         }
     }
 
     #[test]
     fn carbon_and_oxygen_are_as_published() {
-        let carbon = find(b"C").unwrap();
+        let (carbon, oxygen) = (6, 8);
         assert_eq!((radius(carbon), color(carbon)), (1.77, DVec3::splat(144.0 / 255.0)));
-        let oxygen = find(b"O").unwrap();
         assert_eq!((radius(oxygen), color(oxygen)), (1.50, DVec3::new(255.0, 13.0, 13.0) / 255.0));
     }
 
     #[test]
     fn every_radius_and_symbol_is_plausible_and_its_own() {
-        for (index, (symbol, radius, _)) in ELEMENTS.iter().enumerate() {
+        for (index, (symbol, radius, _)) in ELEMENTS.iter().enumerate().skip(1) {
             assert!((1.0..4.0).contains(radius), "{symbol}: {radius}");
-            assert_eq!(find(symbol.as_bytes()).map(usize::from), Some(index), "{symbol}");
+            assert_eq!(number(symbol).map(usize::from), Some(index), "{symbol}");
         }
     }
 }

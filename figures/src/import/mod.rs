@@ -1,12 +1,16 @@
 //! Objects from other programs' files: spheres from XYZ, meshes from OBJ.
 
 mod elements;
+mod foreign;
 pub mod obj;
+mod polygon;
 pub mod xyz;
 
 use std::path::Path;
 
 use crate::scene::{Look, Scene, TooManyColors};
+use crate::text::file_name;
+pub use foreign::Foreign;
 use glam::DVec3;
 
 /// Why a bulk file cannot be read.
@@ -22,28 +26,35 @@ pub enum ImportError {
     /// A file of spheres without a sphere.
     #[error("{0}: no objects")]
     Empty(String),
+    /// A file in another format.
+    Foreign(#[from] Foreign),
 }
 
-/// Reads a bulk file into a scene with a camera, lights and colours of its own; `None` if `path` does not end like one.
+/// Reads a bulk file into a scene with a camera, lights and colours of its own; `None` if `path` is that of a scene file.
 ///
-/// Files of spheres end in `.xyz` or `.extxyz`, meshes in `.obj`.
+/// Files of spheres end in `.xyz` or `.extxyz`, meshes in `.obj`. Scene files end in `.toml`; what is no plain file and has no
+/// ending, as a pipe, is taken for one too.
 ///
 /// # Errors
-/// What is wrong with the file.
+/// What is wrong with the file, or what else it is.
 pub fn load(path: &Path) -> Option<Result<Scene, ImportError>> {
-    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_ascii_lowercase();
     match ending.as_str() {
-        "xyz" | "extxyz" => Some(spheres(path)),
-        "obj" => Some(mesh(path)),
-        _ => None,
+        "toml" => return None,
+        "xyz" | "extxyz" => return Some(spheres(path)),
+        "obj" => return Some(mesh(path)),
+        _ => {}
     }
+    // What is no plain file, the scene's reader tells.
+    let plain = path.metadata().is_ok_and(|found| found.is_file());
+    (plain || (path.exists() && !ending.is_empty())).then(|| Err(Foreign::refused(path).into()))
 }
 
 fn spheres(path: &Path) -> Result<Scene, ImportError> {
     let mut scene = Scene::empty();
-    scene.add_spheres(xyz::load(path, xyz::Options::default())?, None)?;
+    scene.add_spheres(xyz::load(path, xyz::Options::default())?, None, path)?;
     if scene.is_empty() {
-        return Err(ImportError::Empty(path.display().to_string()));
+        return Err(ImportError::Empty(file_name(path)));
     }
     scene.set_stage();
     Ok(scene)
@@ -55,6 +66,23 @@ fn mesh(path: &Path) -> Result<Scene, ImportError> {
     scene.add_mesh(obj::load(path)?, 0, path);
     scene.set_stage();
     Ok(scene)
+}
+
+/// The words of a line. (What `split` and `filter` give too, in half the time.)
+struct Words<'a>(&'a [u8]);
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    #[inline]
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let start = self.0.iter().position(|byte| !byte.is_ascii_whitespace())?;
+        let rest = &self.0[start..];
+        let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        let (word, rest) = rest.split_at(end);
+        self.0 = rest;
+        Some(word)
+    }
 }
 
 /// Reads a number, rounded once to the nearest double; what is none is given back for a message.
@@ -133,6 +161,72 @@ mod tests {
             short += usize::from(short_decimal(word.as_bytes()).is_some());
         }
         assert!((80_000..100_000).contains(&short), "{short}");
+    }
+
+    #[test]
+    fn other_formats_are_refused_by_their_own_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let refusal = |name: &str, content: &[u8]| {
+            std::fs::write(path(name), content).unwrap();
+            let error = load(&path(name)).expect("it is no scene file").unwrap_err().to_string();
+            let error = error.strip_prefix(path(name).to_str().unwrap()).unwrap().to_owned();
+            let remedy = "; a scene is a .toml file, a file of spheres .xyz or .extxyz, a mesh .obj";
+            error.strip_suffix(remedy).map(|told| told[2..].to_owned()).unwrap_or(error)
+        };
+        let by_name = [
+            ("a.pdb", "PDB"),
+            ("a.cif", "mmCIF"),
+            ("a.LMP", "LAMMPS data"),
+            ("a.stl", "STL"),
+            ("a.ply", "PLY"),
+            ("a.gltf", "glTF"),
+            ("a.xyz.gz", "a compressed file"),
+        ];
+        for (name, format) in by_name {
+            assert_eq!(refusal(name, b"text"), format!("{format} is not read"), "{name}");
+        }
+        let by_content: [(&[u8], &str); 7] = [
+            (b"HEADER    HYDROLASE\n", "PDB"),
+            (b"data_1HPV\n#\n", "CIF"),
+            (b"ply\nformat ascii 1.0\n", "PLY"),
+            (b"solid a\nfacet normal 0 0 1\n", "STL"),
+            (b"\x1f\x8b\x08", "gzip data"),
+            (b"\x89PNG\r\n", "a PNG image"),
+            (b"glTF\x02\0\0\0", "glTF"),
+        ];
+        for (content, format) in by_content {
+            assert_eq!(refusal("molecule", content), format!("{format} is not read"));
+            for name in ["a.xyz", "a.obj"] {
+                assert_eq!(refusal(name, content), format!("it holds {format}, which is not read"), "{name}");
+            }
+        }
+        assert_eq!(refusal("molecule", b"text"), "its name has no ending that says what it is");
+        assert_eq!(refusal("a.scene", b"text"), "files that end in .scene are not read");
+        assert!(load(&path("a.toml")).is_none());
+        // What is not there is told by whoever reads scenes.
+        assert!(load(&path("nothing")).is_none() && load(folder.path()).is_none());
+    }
+
+    #[test]
+    fn what_a_mesh_leaves_out_is_told_once_each() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bell\u{7}.obj");
+        let text = "v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 1 0\nvn 0 0 1\nusemtl red\nf 1 2 3 4\nf 1 1 2\nf 1 2 3\n";
+        std::fs::write(&path, text).unwrap();
+        let warnings = mesh(&path).unwrap().warnings;
+        let told: Vec<&str> = warnings
+            .iter()
+            .map(|text| text.split_once(r"bell\u{7}.obj: ").expect("an escaped name").1)
+            .collect();
+        assert_eq!(
+            told,
+            [
+                "left out 1 triangle without area",
+                "1 face crosses itself; the triangles of such a face may overlap",
+                "passed over: materials (mtllib, usemtl), normals (vn)",
+            ]
+        );
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! A file is a line with the number of atoms, a line of comment, then a line for each atom. In a plain file that is
 //! `element x y z`, and whatever follows is passed over. In an extended one the comment has `Properties=name:type:columns`
 //! groups, joined by colons, that say what the columns are; of these `species`, `pos`, `radius` and `color` are read
-//! (`element`, `type` and capitals will do too). Only the first frame counts.
+//! (`element`, `type` and capitals will do too). Only the first frame counts; what follows it is told. Empty lines may stand
+//! before it. `elements.rs` has the rule for names that are no symbols.
 //!
 //! The file streams through a buffer of a few megabytes. Each filling ends at a line's end, is cut into pieces at lines'
 //! ends, and the pieces are read in parallel; what they hold is appended in order. So memory is the spheres and the buffer,
@@ -18,8 +19,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::Sphere;
 
-use super::{elements, shown};
+use super::elements::{self, Found};
+use super::foreign::Foreign;
+use super::{Words, shown};
 use crate::scene::COLOR;
+use crate::text::{Utf16, file_name, quoted, without_mark};
 
 /// The size of the buffer, and so the longest line.
 const BUFFER: usize = 4 << 20;
@@ -48,6 +52,9 @@ pub enum XyzError {
         /// What is wrong there.
         problem: Problem,
     },
+    /// The file is in another format.
+    #[error(transparent)]
+    Foreign(#[from] Foreign),
 }
 
 /// What is wrong with a line.
@@ -94,7 +101,9 @@ pub enum Problem {
     #[error("color must be from 0 to 1, found {0}")]
     Color(f64),
     /// Neither a symbol nor an atomic number.
-    #[error("unknown element {0:?}; expected a symbol such as C, or an atomic number")]
+    #[error(
+        "unknown element {0:?}; expected a symbol such as C, a label such as C1 or OW, or an atomic number"
+    )]
     Element(String),
     /// Nothing says how large the spheres are.
     #[error("neither an element nor a radius column; give the spheres a radius")]
@@ -105,6 +114,12 @@ pub enum Problem {
     /// More colours than can be numbered.
     #[error("more than {COLOR} colors")]
     TooManyColors,
+    /// The text is in another encoding.
+    #[error(transparent)]
+    Utf16(#[from] Utf16),
+    /// The spheres need more memory than there is.
+    #[error("not enough memory for {0} atoms")]
+    Memory(u64),
 }
 
 /// How a file's spheres are taken.
@@ -133,6 +148,8 @@ pub struct Spheres {
     pub color_indices: Vec<u32>,
     /// The colours that occur, in order of appearance: each once, unless there are more than 65,536.
     pub colors: Vec<DVec3>,
+    /// What whoever draws them should know: names that are no symbols, and what follows the first frame.
+    pub notes: Vec<String>,
 }
 
 /// Reads the file at `path`.
@@ -140,11 +157,14 @@ pub struct Spheres {
 /// # Errors
 /// What is wrong, with the line.
 pub fn load(path: &Path, options: Options) -> Result<Spheres, XyzError> {
-    let name = path.display().to_string();
+    let name = file_name(path);
     let error = |source| XyzError::Read { path: name.clone(), source };
     let file = File::open(path).map_err(error)?;
     let length = file.metadata().map_or(0, |metadata| metadata.len());
-    read(file, length, &name, options)
+    read(file, length, &name, options).map_err(|error| match error {
+        XyzError::Line { .. } => Foreign::told(path).map_or(error, XyzError::Foreign),
+        _ => error,
+    })
 }
 
 /// Reads spheres from `source`, which errors call `name` and which has about `length` bytes (0: unknown).
@@ -180,25 +200,36 @@ fn read_lines(
     line: &mut usize,
 ) -> Result<Spheres, Failure> {
     *line = 1;
-    let header = blocks.line()?;
-    let expected = text(header).parse::<u64>().map_err(|_| Problem::Count(shown(header)))?;
-    *line = 2;
+    let mut header = without_mark(blocks.line()?).map_err(Problem::Utf16)?.to_vec();
+    while header.trim_ascii().is_empty() && !blocks.is_empty()? {
+        *line += 1;
+        header = blocks.line()?.to_vec();
+    }
+    let expected = text(&header).parse::<u64>().map_err(|_| Problem::Count(shown(&header)))?;
+    *line += 1;
     let layout = Layout::of(&String::from_utf8_lossy(blocks.line()?), options)?;
 
     let mut found = Spheres::default();
+    let no_memory = |_| Problem::Memory(expected);
     // An atom takes eight bytes at least, so a false count reserves no more than the file is worth.
     let likely = usize::try_from(expected.min(length / 8)).unwrap_or(0);
-    found.spheres.reserve_exact(likely);
-    found.color_indices.reserve_exact(likely);
+    found.spheres.try_reserve_exact(likely).map_err(no_memory)?;
+    found.color_indices.try_reserve_exact(likely).map_err(no_memory)?;
     let mut palette = Palette::default();
-    *line = 3;
+    let mut names = Names::default();
+    *line += 1;
     while (found.spheres.len() as u64) < expected {
         let block = blocks.next()?;
         if block.is_empty() {
             return Err(Problem::Short { expected, found: found.spheres.len() as u64 }.into());
         }
         let missing = usize::try_from(expected - found.spheres.len() as u64).unwrap_or(usize::MAX);
-        for piece in pieces(block, missing).par_iter().map(|piece| layout.atoms(piece)).collect::<Vec<_>>() {
+        let pieces = pieces(block, missing);
+        let read = pieces.iter().map(|piece| piece.len()).sum::<usize>();
+        let behind = block.len() - read;
+        for piece in pieces.par_iter().map(|piece| layout.atoms(piece)).collect::<Vec<_>>() {
+            found.spheres.try_reserve(piece.atoms.len()).map_err(no_memory)?;
+            found.color_indices.try_reserve(piece.atoms.len()).map_err(no_memory)?;
             for (sphere, paint) in piece.atoms {
                 found.spheres.push(sphere);
                 found.color_indices.push(palette.index(paint, &mut found.colors)?);
@@ -207,9 +238,41 @@ fn read_lines(
             if let Some(problem) = piece.problem {
                 return Err(problem.into());
             }
+            for (name, element) in piece.names.0 {
+                names.add(&name, element);
+            }
+        }
+        blocks.start -= behind;
+    }
+    found.notes.extend(names.note());
+    found.notes.extend(blocks.what_follows(*line)?);
+    Ok(found)
+}
+
+/// Names that are no plain symbols, each once, with what they were taken for: some of them.
+#[derive(Default)]
+struct Names(Vec<(Vec<u8>, u8)>);
+
+impl Names {
+    /// So many are told.
+    const TOLD: usize = 8;
+
+    /// Remembers a name. One more than is told is enough, here and in each piece of a file, so that what is told does not
+    /// depend on how it is cut.
+    fn add(&mut self, name: &[u8], element: u8) {
+        if self.0.len() <= Self::TOLD && !self.0.iter().any(|(known, _)| known == name) {
+            self.0.push((name.to_vec(), element));
         }
     }
-    Ok(found)
+
+    fn note(&self) -> Option<String> {
+        let told = self.0.iter().take(Self::TOLD).map(|(name, element)| {
+            format!("{} as {}", quoted(&String::from_utf8_lossy(name)), elements::symbol(*element))
+        });
+        let told = told.collect::<Vec<_>>().join(", ");
+        let more = if self.0.len() > Self::TOLD { " and more" } else { "" };
+        (!told.is_empty()).then(|| format!("names are read by their letters: {told}{more}"))
+    }
 }
 
 /// Cuts a block of whole lines into pieces of whole lines, at most `lines` lines in all.
@@ -279,6 +342,34 @@ impl<R: Read> Blocks<R> {
             None if block.is_empty() => Ok(&[]),
             None => Err(Problem::LongLine.into()),
         }
+    }
+
+    /// Whether the source has been given out to its end.
+    fn is_empty(&mut self) -> Result<bool, Failure> {
+        if self.buffer.len() == self.start {
+            self.fill()?;
+        }
+        Ok(self.buffer.len() == self.start)
+    }
+
+    /// Tells what follows the last atom, if it is more than space; `line` is the next one's number.
+    fn what_follows(&mut self, mut line: usize) -> Result<Option<String>, Failure> {
+        while !self.is_empty()? {
+            let found = match self.line() {
+                Ok(found) => found.trim_ascii(),
+                // A line without an end is something that follows too.
+                Err(Failure::Line(_)) => b"...",
+                Err(failure) => return Err(failure),
+            };
+            if !found.is_empty() {
+                return Ok(Some(match text(found).parse::<u64>() {
+                    Ok(_) => format!("only the first frame is drawn; another one follows in line {line}"),
+                    Err(_) => format!("what follows the last atom is passed over, from line {line} on"),
+                }));
+            }
+            line += 1;
+        }
+        Ok(None)
     }
 
     /// Gives out one line, without its end; an empty one at the end.
@@ -367,6 +458,7 @@ struct Layout {
 /// What was read from a piece of a file: atoms, and what is wrong with the line behind them, if anything.
 struct Piece {
     atoms: Vec<(Sphere, Paint)>,
+    names: Names,
     problem: Option<Problem>,
 }
 
@@ -407,17 +499,23 @@ impl Layout {
     fn atoms(&self, lines: &[u8]) -> Piece {
         let mut atoms = Vec::with_capacity(lines.len() / 24);
         let mut columns = Vec::with_capacity(self.columns);
+        let mut names = Names::default();
         for line in lines.split_inclusive(|&byte| byte == b'\n') {
-            match self.atom(line, &mut columns) {
+            match self.atom(line, &mut columns, &mut names) {
                 Ok(atom) => atoms.push(atom),
-                Err(problem) => return Piece { atoms, problem: Some(problem) },
+                Err(problem) => return Piece { atoms, names, problem: Some(problem) },
             }
         }
-        Piece { atoms, problem: None }
+        Piece { atoms, names, problem: None }
     }
 
     /// Reads a line; `columns` is a place to work in.
-    fn atom<'a>(&self, line: &'a [u8], columns: &mut Vec<&'a [u8]>) -> Result<(Sphere, Paint), Problem> {
+    fn atom<'a>(
+        &self,
+        line: &'a [u8],
+        columns: &mut Vec<&'a [u8]>,
+        names: &mut Names,
+    ) -> Result<(Sphere, Paint), Problem> {
         columns.clear();
         columns.extend(Words(line).take(self.columns));
         if columns.len() < self.columns {
@@ -441,9 +539,14 @@ impl Layout {
         let needed = (self.options.colored && color.is_none())
             || (self.radius.is_none() && self.options.radius.is_none());
         let element = match self.element.filter(|_| needed) {
-            Some(at) => {
-                Some(elements::find(columns[at]).ok_or_else(|| Problem::Element(shown(columns[at])))?)
-            }
+            Some(at) => match elements::find(columns[at]) {
+                Some(Found::Plain(element)) => Some(element),
+                Some(Found::Label(element)) => {
+                    names.add(columns[at], element);
+                    Some(element)
+                }
+                None => return Err(Problem::Element(shown(columns[at]))),
+            },
             None => None,
         };
         let radius = match (self.radius, self.options.radius, element) {
@@ -463,23 +566,6 @@ impl Layout {
             (None, _) => Paint::Nothing,
         };
         Ok((sphere, paint))
-    }
-}
-
-/// The words of a line. (What `split` and `filter` give too, in half the time.)
-struct Words<'a>(&'a [u8]);
-
-impl<'a> Iterator for Words<'a> {
-    type Item = &'a [u8];
-
-    #[inline]
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let start = self.0.iter().position(|byte| !byte.is_ascii_whitespace())?;
-        let rest = &self.0[start..];
-        let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
-        let (word, rest) = rest.split_at(end);
-        self.0 = rest;
-        Some(word)
     }
 }
 
@@ -597,6 +683,58 @@ mod tests {
             assert_eq!(found.spheres.len(), count as usize);
             assert!((0..count).zip(&found.spheres).all(|(index, sphere)| *sphere == expected(index)));
         }
+    }
+
+    #[test]
+    fn labels_are_read_by_their_letters_and_told() {
+        let text = "6\n\nOW 0 0 0\nHW1 1 0 0\nC1 2 0 0\nD 3 0 0\nX 4 0 0\nHW1 5 0 0\n";
+        let found = parse(text, Options::default()).unwrap();
+        let radii: Vec<f64> = found.spheres.iter().map(Sphere::radius).collect();
+        assert_eq!(radii, [1.5, 1.2, 1.77, 1.2, 0.5, 1.2]);
+        let note =
+            r#"names are read by their letters: "OW" as O, "HW1" as H, "C1" as C, "X" as a dummy atom"#;
+        assert_eq!(found.notes, [note]);
+        // A long list is cut, at the same place however the file is cut into pieces.
+        let mut text = "100000\n\n".to_owned();
+        (0..100_000).for_each(|k| text += &format!("C{k} 0 0 0 and so on, to make it long\n"));
+        let [note] = &parse(&text, Options::default()).unwrap().notes[..] else { panic!("one note") };
+        assert!(note.ends_with(r#""C6" as C, "C7" as C and more"#), "{note}");
+    }
+
+    #[test]
+    fn a_mark_and_empty_lines_may_come_first() {
+        for start in ["\u{feff}", "\n", "\u{feff}\n \r\n\n"] {
+            let found = parse(&format!("{start}1\n\nC 1 2 3\n"), Options::default()).unwrap();
+            assert_eq!(found.spheres, [sphere(1.0, 2.0, 3.0, 1.77)], "{start:?}");
+        }
+        let error = parse("\n\n1\n\nC 1 2 three\n", Options::default()).unwrap_err();
+        assert_eq!(error.to_string(), "atoms.xyz:5: expected a number, found \"three\"");
+        let error = read(&b"\xff\xfe1\0"[..], 0, "atoms.xyz", Options::default()).unwrap_err();
+        assert_eq!(error.to_string(), "atoms.xyz:1: UTF-16 text; save it as UTF-8");
+    }
+
+    #[test]
+    fn what_follows_the_first_frame_is_told() {
+        let notes = |text: &str| parse(text, Options::default()).unwrap().notes;
+        let frame = "1\n\nC 1 2 3\n";
+        assert!(notes(&format!("{frame}\n \n")).is_empty());
+        assert_eq!(notes(&frame.repeat(3)), ["only the first frame is drawn; another one follows in line 4"]);
+        assert_eq!(
+            notes(&format!("{frame}\nC 1 2 3")),
+            ["what follows the last atom is passed over, from line 5 on"]
+        );
+        let long = format!("{frame}{}", "C".repeat(BUFFER + 1));
+        assert_eq!(notes(&long), ["what follows the last atom is passed over, from line 4 on"]);
+    }
+
+    #[test]
+    fn a_count_beyond_the_memory_is_an_error() {
+        // The length of a file with holes can be anything.
+        let error = read(&b"1000000000000000000\n\nC 0 0 0\n"[..], u64::MAX, "atoms.xyz", Options::default());
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "atoms.xyz:2: not enough memory for 1000000000000000000 atoms"
+        );
     }
 
     #[test]
