@@ -175,7 +175,7 @@ impl Scene {
             color: DVec3::from_array(color),
         };
         self.lights =
-            vec![lamp([-4.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.22, 0.25, 0.32])];
+            vec![lamp([-3.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.36, 0.4, 0.48])];
     }
 
     /// The unit normal, on either side, of the plane that all objects lie in; `None` if there is none, or if they lie on a line.
