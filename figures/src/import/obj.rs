@@ -424,6 +424,9 @@ mod tests {
         let mixed = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 1 3 4\nf -3 -2 4\nv 0 1 0\n";
         assert_eq!(parse(mixed).unwrap(), expected);
         assert_eq!(parse(&format!("f 1 2 3\nf 1 3 4\nf 1 2 4\n{SQUARE}")).unwrap(), expected);
+        // Faces stay in order, those that could be cut at once too.
+        let ordered = parse(&format!("{SQUARE}f 1 3 4\nf 1 2 3\n")).unwrap();
+        assert_eq!(parse("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 3 4\nf 1 2 3\nv 0 1 0\n").unwrap(), ordered);
         let error = parse(&format!("f 1 2 3\nf 1 2 5\n{SQUARE}")).unwrap_err();
         assert_eq!(error.to_string(), "mesh.obj:2: no vertex 5 among the 4 of the file");
     }
