@@ -42,14 +42,9 @@ pub(crate) fn find(name: &[u8]) -> Option<Found> {
     let bare = length == name.len();
     let small = |at: usize| letters.get(at).is_some_and(u8::is_ascii_lowercase);
     let capital = |at: usize| letters.get(at).is_some_and(u8::is_ascii_uppercase);
-    let protein = |letters: &[u8]| match letters.to_ascii_uppercase()[..] {
-        [b'H', _] => true,
-        [b'C' | b'N' | b'O' | b'S', b'A' | b'B' | b'D' | b'E' | b'G' | b'H' | b'Z'] => true,
-        _ => false,
-    };
     let one_case = (0..length).all(capital) || (0..length).all(small);
     if let Some(element) = by_symbol(letters) {
-        match (bare, one_case && protein(letters)) {
+        match (bare, one_case && is_position(letters)) {
             (true, false) => return Some(Found::Plain(element)),
             (false, true) => {}
             // SG is sulfur's position and not seaborgium.
@@ -65,7 +60,7 @@ pub(crate) fn find(name: &[u8]) -> Option<Found> {
     }
     let first = || by_symbol(&letters[..1]);
     let element = if one_case && (2..=4).contains(&length) {
-        by_symbol(&letters[..2]).filter(|_| !protein(&letters[..2])).or_else(first)
+        by_symbol(&letters[..2]).filter(|_| !is_position(&letters[..2])).or_else(first)
     } else if capital(0) && small(1) && capital(2) {
         by_symbol(&letters[..2])
     } else if capital(0) && small(1) && length == 2 {
@@ -78,6 +73,16 @@ pub(crate) fn find(name: &[u8]) -> Option<Found> {
 
 /// Uranium: whatever is heavier is not in a molecule.
 const HEAVIEST: u8 = 92;
+
+/// Whether two letters look like a position in a protein.
+fn is_position(letters: &[u8]) -> bool {
+    let [first, second] = letters else { return false };
+    match first.to_ascii_uppercase() {
+        b'H' => true,
+        b'C' | b'N' | b'O' | b'S' => b"ABDEGHZ".contains(&second.to_ascii_uppercase()),
+        _ => false,
+    }
+}
 
 /// Names of points that are no atoms: of unknown kind, of centers, of ghosts, of lone pairs and other sites of charge.
 const DUMMIES: [&str; 10] = ["X", "XX", "DU", "DUM", "Q", "BQ", "EP", "LP", "M", "MW"];
