@@ -190,16 +190,21 @@ impl Scene {
         let start = self.balls().next()?.0;
         // Within 0..=1 in magnitude, whatever the scale. What overflows compares with nothing.
         let relative = |point: DVec3| point / size - start / size;
-        let farthest = |distance: &dyn Fn(DVec3) -> f64| {
-            let none = (DVec3::ZERO, 0.0);
-            self.balls().fold(none, |most, (center, _)| {
-                let at = relative(center);
-                let distance = distance(at);
-                if distance > most.1 { (at, distance) } else { most }
-            })
-        };
-        let (along, length) = farthest(&|at| at.length_squared());
-        let (across, width) = farthest(&|at| along.cross(at).length_squared());
+        // Four points of diameter 1 between two planes this far apart span a tetrahedron of at most half the distance in volume,
+        // its base being at most half a square; the triple product is six times that. So a few points show most solids.
+        let few = |count: usize| count / 32 + 1;
+        let sample = self.spheres.iter().step_by(few(self.spheres.len())).map(Sphere::center);
+        let corners = self.triangles.iter().step_by(few(self.triangles.len())).map(|one| one.vertices()[0]);
+        let sample: Vec<DVec3> = sample.chain(corners).map(relative).collect();
+        let (along, _) = farthest(sample.iter().copied(), |at| at.length_squared());
+        let (across, _) = farthest(sample.iter().copied(), |at| along.cross(at).length_squared());
+        let (_, volume) = farthest(sample.iter().copied(), |at| along.cross(across).dot(at).abs());
+        if volume > 3.0 * (2.0 * FLAT) {
+            return None;
+        }
+        let centers = || self.balls().map(|(center, _)| relative(center));
+        let (along, length) = farthest(centers(), |at| at.length_squared());
+        let (across, width) = farthest(centers(), |at| along.cross(at).length_squared());
         // The width of the objects, times their length, which is at least a quarter.
         let width = width.sqrt();
         if !(length > 0.0 && width > NEEDLE) {
@@ -286,6 +291,14 @@ const FLAT: f64 = 1.0 / 1024.0;
 /// Objects narrower than this part of their length lie on a line: the normal of a plane through them would be lost in the
 /// rounding of their coordinates.
 const NEEDLE: f64 = 1e-9;
+
+/// The first of some points where a distance is largest, and that distance; zero if none is more.
+fn farthest(points: impl Iterator<Item = DVec3>, distance: impl Fn(DVec3) -> f64) -> (DVec3, f64) {
+    points.fold((DVec3::ZERO, 0.0), |most, at| {
+        let distance = distance(at);
+        if distance > most.1 { (at, distance) } else { most }
+    })
+}
 
 /// The mark of a colour among a scene's looks: positions from here on count colours, those below looks.
 pub const COLOR: u32 = 1 << 31;

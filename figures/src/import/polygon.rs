@@ -61,7 +61,7 @@ impl Cutter {
         let n = corners.len();
         self.first = least_rotation(corners);
         let first = self.first;
-        let from_least = (0..n).map(|at| corners[(first + at) % n]);
+        let from_least = (0..n).map(|at| corners[wrapped(first + at, n)]);
         let Some((axis, turn)) = facing(from_least.clone()) else {
             // No area on the whole: all on a line, or loops that cancel.
             self.fan((0..n).map(index), n, triangles);
@@ -93,23 +93,26 @@ impl Cutter {
     }
 
     fn push(&self, corners: Cut, n: usize, triangles: &mut Vec<Cut>) {
-        triangles.push(corners.map(|corner| index((self.first + corner as usize) % n)));
+        triangles.push(corners.map(|corner| index(wrapped(self.first + corner as usize, n))));
     }
 
     /// Cuts off ear after ear.
     fn clip(&mut self, triangles: &mut Vec<Cut>) -> Outcome {
         let n = self.points.len();
         self.next.clear();
-        self.next.extend((0..n).map(|at| index((at + 1) % n)));
+        self.next.extend((0..n).map(|at| index(wrapped(at + 1, n))));
         self.before.clear();
-        self.before.extend((0..n).map(|at| index((at + n - 1) % n)));
+        self.before.extend((0..n).map(|at| index(wrapped(at + n - 1, n))));
         self.queued.clear();
         self.queued.resize(n, true);
         self.queue.clear();
         self.queue.extend((0..n).map(index));
         let convex = |at: &usize| {
-            orientation(self.points[(at + n - 1) % n], self.points[*at], self.points[(at + 1) % n])
-                == Ordering::Greater
+            orientation(
+                self.points[wrapped(at + n - 1, n)],
+                self.points[*at],
+                self.points[wrapped(at + 1, n)],
+            ) == Ordering::Greater
         };
         self.posts.plant((0..n).filter(|at| !convex(at)).map(index), &self.points);
 
@@ -317,7 +320,7 @@ fn is_strictly_convex(points: &[Point]) -> bool {
     let n = points.len();
     let mut changes = 0;
     for at in 0..n {
-        let [p, q, r] = [points[at], points[(at + 1) % n], points[(at + 2) % n]];
+        let [p, q, r] = [points[at], points[wrapped(at + 1, n)], points[wrapped(at + 2, n)]];
         if orientation(p, q, r) != Ordering::Greater {
             return false;
         }
@@ -342,7 +345,7 @@ fn least_rotation(corners: &[DVec3]) -> usize {
     let n = corners.len();
     let (mut i, mut j, mut equal) = (0, 1, 0);
     while i < n && j < n && equal < n {
-        match compare(corners[(i + equal) % n], corners[(j + equal) % n]) {
+        match compare(corners[wrapped(i + equal, n)], corners[wrapped(j + equal, n)]) {
             Ordering::Equal => {
                 equal += 1;
                 continue;
@@ -357,6 +360,11 @@ fn least_rotation(corners: &[DVec3]) -> usize {
         equal = 0;
     }
     i.min(j)
+}
+
+/// A position below `2 n` among `n` that go around. (A remainder would cost a short polygon more than all else.)
+fn wrapped(at: usize, n: usize) -> usize {
+    if at < n { at } else { at - n }
 }
 
 /// Positions in a polygon fit 32 bits: a line of a file has far fewer bytes than that.
