@@ -151,7 +151,7 @@ impl Scene {
     /// Sets a stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
     ///
     /// The camera is [`Camera::stage`]'s, from [`FROM`]. Objects that lie in one plane which is seen edge-on from there, or at a
-    /// slope below [`EDGE_ON`], are seen along the plane's normal, from the front or, where the plane runs from front to back,
+    /// slope below `EDGE_ON`, are seen along the plane's normal, from the front or, where the plane runs from front to back,
     /// from the right.
     pub fn set_stage(&mut self) {
         let (low, high) =
@@ -180,7 +180,7 @@ impl Scene {
 
     /// The unit normal, on either side, of the plane that all objects lie in; `None` if there is none, or if they lie on a line.
     ///
-    /// A plane is one for this purpose if nothing rises above it by more than [`FLAT`] of the objects' width, so that seen
+    /// A plane is one for this purpose if nothing rises above it by more than `FLAT` of the objects' width, so that seen
     /// edge-on they are at most a line. `size` is the diameter of all objects.
     fn flat_normal(&self, size: f64) -> Option<DVec3> {
         // The objects' width is at most their size: mostly this decides.
