@@ -5,35 +5,17 @@
 
 use std::io::{self, Write};
 
+use crate::text::escaped;
+
 /// Writes one line. Whatever in it is not to be shown but done by a terminal, a line end too, is escaped: `\u{1b}`.
 pub(crate) fn tell(line: &str) {
     // Nobody is left to be told when stderr itself is gone.
-    let _ = writeln!(io::stderr(), "{}", visible(line));
+    let _ = writeln!(io::stderr(), "{}", escaped(line));
 }
 
 /// Writes lines, each as [`tell`] does.
 pub(crate) fn tell_lines(lines: &str) {
     lines.lines().for_each(tell);
-}
-
-fn visible(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for character in text.chars() {
-        if character.is_control() || is_bidirectional_control(character) {
-            shown.extend(character.escape_default());
-        } else {
-            shown.push(character);
-        }
-    }
-    shown
-}
-
-/// Is it one of Unicode's characters that reorder the text around them, and so can show a name as another?
-fn is_bidirectional_control(character: char) -> bool {
-    matches!(
-        character,
-        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
-    )
 }
 
 #[cfg(test)]
@@ -43,13 +25,13 @@ mod tests {
     #[test]
     fn nothing_that_steers_a_terminal_is_left() {
         assert_eq!(
-            visible("\u{1b}[2J\r\n\t\0\u{7f}\u{9b}1A\u{202e}"),
+            escaped("\u{1b}[2J\r\n\t\0\u{7f}\u{9b}1A\u{202e}"),
             r"\u{1b}[2J\r\n\t\u{0}\u{7f}\u{9b}1A\u{202e}"
         );
         // Text in any script stays, and so does a quote or a backslash.
         let plain = r#"Größe 大きさ "a\b" × ½"#;
-        assert_eq!(visible(plain), plain);
+        assert_eq!(escaped(plain), plain);
         let all: String = (0..=0x0010_ffff_u32).filter_map(char::from_u32).collect();
-        assert!(!visible(&all).contains(char::is_control));
+        assert!(!escaped(&all).contains(char::is_control));
     }
 }
