@@ -1,4 +1,4 @@
-//! The sign of a dot product: on which side of a plane a direction points.
+//! The sign of a dot product: on which side of a plane a direction or a point lies.
 //!
 //! A filter in plain doubles decides unless the terms cancel to their last bits; exact integers decide then.
 
@@ -11,11 +11,10 @@ use super::{Dyadic, power_of_two};
 
 /// Bound of the error of a dot product: this part of the sum of the magnitudes of its terms; `3.01 * 2^-53` is proved.
 const ERROR: f64 = power_of_two(-51);
+/// The same where one factor is a rounded difference; `4.01 * 2^-53` is proved.
+const DIFFERENCE_ERROR: f64 = power_of_two(-50);
 /// ... and an absolute one for terms that underflow; `2^-1073` is proved.
 const ERROR_FLOOR: f64 = f64::MIN_POSITIVE;
-
-/// Products of two doubles are multiples of 2^-2148, and three of them sum to less than 2^2050.
-type Integer = Dyadic<68>;
 
 /// Returns the sign of `a . b`, exact for all finite vectors; `None` if a component is infinite or NaN.
 ///
@@ -32,16 +31,30 @@ type Integer = Dyadic<68>;
 #[inline]
 #[must_use]
 pub fn dot_sign(a: DVec3, b: DVec3) -> Option<Ordering> {
-    let (value, error) = dot_with_error(a, b);
-    if value > error {
-        decided(Stage::Filter);
-        Some(Ordering::Greater)
-    } else if value < -error {
-        decided(Stage::Filter);
-        Some(Ordering::Less)
-    } else {
-        integer_sign(a, b)
-    }
+    filter_sign(dot_with_error(a, b)).or_else(|| integer_sign(a, DVec3::ZERO, b))
+}
+
+/// Returns the sign of `(a - b) . n`, exact for all finite vectors, also where the difference rounds or overflows; `None`
+/// if a component is infinite or NaN.
+///
+/// It tells on which side of the plane through `b` with the normal `n` the point `a` lies: `Greater` on the side to which
+/// the normal points, `Equal` in the plane (everywhere, if the normal is zero).
+///
+/// ```
+/// use core::cmp::Ordering;
+/// use glam::DVec3;
+/// use rt_math::exact::{difference_dot_sign, dot_sign};
+///
+/// // a - b rounds to (0.5, 0.5, 0), and so into the plane
+/// let (a, b) = (DVec3::new(0.5, 0.5, 0.0), DVec3::new(1e-30, 0.0, 0.0));
+/// let n = DVec3::new(1.0, -1.0, 0.0);
+/// assert_eq!(dot_sign(a - b, n), Some(Ordering::Equal));
+/// assert_eq!(difference_dot_sign(a, b, n), Some(Ordering::Less));
+/// ```
+#[inline]
+#[must_use]
+pub fn difference_dot_sign(a: DVec3, b: DVec3, n: DVec3) -> Option<Ordering> {
+    filter_sign(sum_with_error((a - b) * n, DIFFERENCE_ERROR)).or_else(|| integer_sign(a, b, n))
 }
 
 /// Returns the rounded `a . b` and a bound of its error; where something overflows the bound is no smaller than the value,
@@ -51,20 +64,50 @@ pub fn dot_sign(a: DVec3, b: DVec3) -> Option<Ordering> {
 #[inline(always)]
 #[must_use]
 pub fn dot_with_error(a: DVec3, b: DVec3) -> (f64, f64) {
-    let terms = a * b;
-    let size = (terms.x.abs() + terms.y.abs()) + terms.z.abs();
-    ((terms.x + terms.y) + terms.z, size * ERROR + ERROR_FLOOR)
+    sum_with_error(a * b, ERROR)
 }
 
+/// The rounded sum of the terms, and `error` of the sum of their magnitudes with what may underflow.
+#[inline(always)]
+fn sum_with_error(terms: DVec3, error: f64) -> (f64, f64) {
+    let size = (terms.x.abs() + terms.y.abs()) + terms.z.abs();
+    ((terms.x + terms.y) + terms.z, size * error + ERROR_FLOOR)
+}
+
+/// The sign of a value that is larger than the bound of its error; NaN has none.
+#[inline(always)]
+fn filter_sign((value, error): (f64, f64)) -> Option<Ordering> {
+    if value > error {
+        decided(Stage::Filter);
+        Some(Ordering::Greater)
+    } else if value < -error {
+        decided(Stage::Filter);
+        Some(Ordering::Less)
+    } else {
+        None
+    }
+}
+
+/// The sign of `(a - b) . n` by exact integers.
 #[cold]
 #[inline(never)]
-fn integer_sign(a: DVec3, b: DVec3) -> Option<Ordering> {
-    if !(a.is_finite() && b.is_finite()) {
+fn integer_sign(a: DVec3, b: DVec3, n: DVec3) -> Option<Ordering> {
+    if !(a.is_finite() && b.is_finite() && n.is_finite()) {
         return None;
     }
     decided(Stage::Integers);
-    let [a, b] = [a, b].map(|v| v.to_array().map(Integer::from_f64));
-    Some((&a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]).sign())
+    let near_one = |x: f64| x == 0.0 || (power_of_two(-64)..power_of_two(64)).contains(&x.abs());
+    Some(if [a, b, n].into_iter().flat_map(|v| v.to_array()).all(near_one) {
+        sized_sign::<8>(a, b, n) // the sum is a multiple of 2^-232 below 2^131
+    } else {
+        sized_sign::<68>(a, b, n) // ... of 2^-2148 below 2^2051
+    })
+}
+
+fn sized_sign<const LIMBS: usize>(a: DVec3, b: DVec3, n: DVec3) -> Ordering {
+    let [a, b, n] = [a, b, n].map(|v| v.to_array().map(Dyadic::<LIMBS>::from_f64));
+    let term = |i: usize| &(&a[i] - &b[i]) * &n[i];
+    (term(0) + term(1) + term(2)).sign()
 }
 
 #[cfg(test)]
@@ -134,6 +177,118 @@ mod tests {
         assert!(integers > 1_000, "{integers}");
     }
 
+    /// Checks a class of `(a - b) . n` against exact rational arithmetic; returns how often filter and integers decided.
+    fn check_differences(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 3]) -> [usize; 2] {
+        let mut rng = Rng::new(seed);
+        let mut total = [0; 2];
+        for _ in 0..cases(1_000_000) {
+            let [a, b, n] = vectors(&mut rng);
+            decisions();
+            let found = difference_dot_sign(a.into(), b.into(), n.into());
+            let [filter, _, integers] = decisions();
+            total = [total[0] + filter, total[1] + integers];
+            let sum = (0..3)
+                .map(|i| (exact(a[i]) - exact(b[i])) * exact(n[i]))
+                .fold(exact(0.0), |sum, term| sum + term);
+            assert_eq!(found, Some(sum.cmp(&exact(0.0))), "({a:?} - {b:?}) . {n:?}");
+        }
+        total
+    }
+
+    #[test]
+    fn points_well_off_a_plane_are_decided_by_the_filter() {
+        let [filter, integers] =
+            check_differences(75, |rng| [[0; 3]; 3].map(|v| v.map(|_| rng.with_exponent(-4..2))));
+        assert!(filter > 1000 * (integers + 1), "{filter} {integers}");
+    }
+
+    #[test]
+    fn points_of_any_doubles_have_their_side() {
+        let [filter, integers] = check_differences(76, |rng| [[0; 3]; 3].map(|v| v.map(|_| rng.finite())));
+        assert!(filter > 100 && integers > 100, "{filter} {integers}");
+    }
+
+    #[test]
+    fn points_near_a_plane_have_their_side_at_any_offset_and_scale() {
+        let [filter, integers] = check_differences(77, |rng| {
+            let scale = 2f64.powi(rng.integer(-900..900));
+            let offset = scale * 2f64.powi(rng.integer(-60..60));
+            let n = [0; 3].map(|_| rng.with_exponent(-60..60));
+            let b = [0; 3].map(|_| offset * rng.with_exponent(-4..4));
+            let [x, y] = [0; 2].map(|_| scale * rng.with_exponent(-4..4));
+            let z = -(x * n[0] + y * n[1]) / n[2];
+            let z = f64::from_bits((b[2] + z).to_bits() + rng.below(4) as u64);
+            [[b[0] + x, b[1] + y, z], b, n]
+        });
+        assert!(filter > 10 && integers > 1_000, "{filter} {integers}");
+    }
+
+    #[test]
+    fn points_exactly_in_a_plane_have_no_side() {
+        let mut rng = Rng::new(78);
+        for _ in 0..cases(1_000_000) {
+            // all corners are multiples of one unit below 2^30 of it, and so is the normal of two edges, in its square
+            let scale = 2f64.powi(rng.integer(-400..400));
+            let [a, b, e, f] =
+                [[0; 3]; 4].map(|v| DVec3::from_array(v.map(|_| f64::from(rng.integer(-1000..1000)))));
+            let n = e.cross(f) * 2f64.powi(rng.integer(-400..400));
+            let [s, t] = [0; 2].map(|_| f64::from(rng.integer(-1000..1000)));
+            let [in_plane, b] = [(b + s * e + t * f) * scale, b * scale];
+            assert_eq!(
+                difference_dot_sign(in_plane, b, n),
+                Some(Ordering::Equal),
+                "{in_plane:?} {b:?} {n:?}"
+            );
+            assert_eq!(difference_dot_sign(a, a, n), Some(Ordering::Equal), "the point itself, {a:?} {n:?}");
+            assert_eq!(
+                difference_dot_sign(a, b, DVec3::ZERO),
+                Some(Ordering::Equal),
+                "no normal, {a:?} {b:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn differences_that_overflow_or_underflow_have_their_sign() {
+        let [_, integers] = check_differences(79, |rng| {
+            let range = if rng.below(2) == 0 { 1019..1024 } else { -1074..-1000 };
+            let n = if rng.below(2) == 0 { -4..4 } else { range.clone() };
+            [range.clone(), range, n].map(|range| [0; 3].map(|_| rng.with_exponent(range.clone())))
+        });
+        assert!(integers > 1_000, "{integers}");
+        let top = DVec3::splat(f64::MAX);
+        assert_eq!(difference_dot_sign(top, -top, DVec3::ONE), Some(Ordering::Greater));
+        assert_eq!(difference_dot_sign(top, -top, DVec3::new(1.0, -1.0, 0.0)), Some(Ordering::Equal));
+        let least = DVec3::splat(f64::from_bits(1));
+        assert_eq!(difference_dot_sign(least, DVec3::ZERO, -least), Some(Ordering::Less));
+    }
+
+    #[test]
+    fn terms_that_round_to_the_least_doubles_have_their_sign() {
+        // products of about 2^-1074: what rounding leaves of them says nothing about their sum
+        let vectors = |rng: &mut Rng| [[0; 3]; 2].map(|v| v.map(|_| rng.with_exponent(-539..-535)));
+        let [_, integers] = check_class(80, vectors);
+        assert!(integers > 1_000, "{integers}");
+        let [_, integers] = check_differences(81, |rng| {
+            let [a, n] = vectors(rng);
+            [a, [0; 3].map(|_| rng.with_exponent(-539..-535)), n]
+        });
+        assert!(integers > 1_000, "{integers}");
+    }
+
+    #[test]
+    fn numbers_at_the_ends_of_each_range_fit() {
+        for (seed, end) in [(82, 63), (83, 64), (84, 65), (85, 150), (86, 1022)] {
+            let [_, integers] = check_differences(seed, |rng| {
+                // the large terms cancel, and the small one decides
+                let [p, q] = [0; 2].map(|_| rng.with_exponent(end - 3..end + 1));
+                let [r, s, t] = [0; 3].map(|_| rng.with_exponent(-end - 1..-end + 3));
+                [[p, r, q], [-p, s, -q], [q, t, -p]]
+            });
+            assert!(integers > 1_000, "{integers} at 2^{end}");
+        }
+    }
+
     #[test]
     fn what_is_not_finite_has_no_sign() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -143,6 +298,9 @@ mod tests {
                 assert_eq!(dot_sign(wrong, DVec3::Y), None);
                 assert_eq!(dot_sign(DVec3::Y, wrong), None);
                 assert_eq!(dot_sign(wrong, wrong), None);
+                assert_eq!(difference_dot_sign(wrong, DVec3::X, DVec3::Y), None);
+                assert_eq!(difference_dot_sign(DVec3::X, wrong, DVec3::Y), None);
+                assert_eq!(difference_dot_sign(DVec3::X, DVec3::Y, wrong), None);
             }
         }
     }

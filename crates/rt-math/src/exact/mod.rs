@@ -36,7 +36,7 @@ mod round;
 pub(crate) mod stage;
 
 pub use crate::reflect::reflect_if_certain;
-pub use dot::{dot_sign, dot_with_error};
+pub use dot::{difference_dot_sign, dot_sign, dot_with_error};
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
 pub use error_free::{fast_two_sum, remainder, two_diff, two_prod, two_sum};
