@@ -10,16 +10,21 @@
 //!                                 specular = k_s max(0, <-D|R>)^shininess light
 //! ```
 //!
-//! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything.
+//! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything. Both sides,
+//! the eye's and the light's, are decided exactly, since the specular term jumps where the light sets.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rt_math::exact::dot_sign;
+use rt_math::exact::{difference_dot_sign, dot_sign};
 use rt_math::reflect;
 
 use crate::color::clamp_channel;
 use crate::power::power;
+
+/// Bound of the error of the cosine between the directions to a light and along a normal, both of which [`unit`] rounds: a
+/// cosine beyond it has the exact sign. `6.1 * 2^-53` is proved in `docs/numerics.md`, section 11.
+pub(crate) const COSINE_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// How a surface answers light: the coefficients of Phong's terms.
 ///
@@ -51,8 +56,12 @@ pub struct PointLight {
 ///
 /// `direction` leads from the eye to the point and `normal` is perpendicular to the surface; both may have any
 /// length, and the normal is turned to the side that the ray comes from. `surface` is the surface's own colour.
-/// Each light adds a diffuse and a specular term, both only if it is on the eye's side of the surface; a light
-/// exactly at the point adds nothing. Without lights the result is `surface` itself: a flat picture.
+/// Each light adds a diffuse and a specular term, both only if it is on the eye's side of the surface; a light in the plane
+/// of the surface or exactly at the point adds nothing. Without lights the result is `surface` itself: a flat picture.
+///
+/// On which side of the plane through `point` the eye and each light are is exact for all finite vectors given, however
+/// far or near. The terms themselves are rounded: a light that is on the eye's side by less than rounding may have a
+/// diffuse term of 0, and none is negative.
 ///
 /// Channels are not clamped. A zero or non-finite direction, normal or distance to a light leaves the term out that
 /// needs it. A NaN shininess makes the specular term NaN; one of 0 or less counts as a power all the same; a specular
@@ -87,16 +96,22 @@ pub fn phong(
     }
     // The side is told by the vectors as given: once they are rounded to length 1, a grazing view may change it.
     let turn = if dot_sign(direction, normal) == Some(Ordering::Greater) { -1.0 } else { 1.0 };
+    let given_normal = turn * normal;
     let direction = unit(direction);
-    let normal = turn * unit(normal);
+    let normal = unit(given_normal);
 
     let mut color = material.ambient * surface;
     for light in lights {
         let incident = unit(towards(light.position, point)); // L
         let cosine = (-incident).dot(normal);
-        // Written so that NaN fails it.
-        if cosine > 0.0 {
-            color += material.diffuse * cosine.min(1.0) * surface * light.color;
+        // NaN goes the exact way too, and is on no side there.
+        let lit = if cosine.abs() > COSINE_ERROR {
+            cosine > 0.0
+        } else {
+            is_above(light.position, point, given_normal)
+        };
+        if lit {
+            color += material.diffuse * clamp_channel(cosine) * surface * light.color;
             // Most surfaces are matt: no mirrored term, no power.
             if material.specular != 0.0 {
                 let alignment = clamp_channel((-direction).dot(reflect(incident, normal)));
@@ -105,6 +120,13 @@ pub fn phong(
         }
     }
     color
+}
+
+/// Tells whether `light` is on the side of the plane through `point` to which `normal` leads, by the vectors as given.
+#[cold]
+#[inline(never)]
+fn is_above(light: DVec3, point: DVec3, normal: DVec3) -> bool {
+    difference_dot_sign(light, point, normal) == Some(Ordering::Greater)
 }
 
 /// Returns the vector of length 1 in the same direction, each component within 4 ulp (tested); zero stays zero, and a
@@ -267,6 +289,140 @@ mod tests {
             assert_eq!([lit_from(-n), lit_from(n)], [away, !away], "direction {d:?}, normal {n:?}");
         }
         assert!(rounding_would_err > 500, "{rounding_would_err}");
+    }
+
+    /// Pseudo-random numbers: doubles of either sign within 1, and integers.
+    struct Random(u64);
+
+    impl Random {
+        fn below(&mut self, n: u64) -> u64 {
+            self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            (self.0 >> 33) % n
+        }
+
+        fn power_of_two(&mut self, exponents: std::ops::Range<i32>) -> f64 {
+            let count = exponents.end.abs_diff(exponents.start);
+            let above = i32::try_from(self.below(count.into())).expect("a short range");
+            2f64.powi(exponents.start + above)
+        }
+
+        fn vector(&mut self) -> DVec3 {
+            DVec3::from_array([0; 3].map(|_| self.below(1 << 31) as f64 / 2f64.powi(30) - 1.0))
+        }
+    }
+
+    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from the
+    /// other; returns whether the rounded cosine would put it on another side.
+    fn check_side(point: DVec3, light: DVec3, normal: DVec3) -> bool {
+        use crate::phong_batch::{SurfacePoint, phong_batch};
+        use crate::reference::exact;
+        let side = (0..3)
+            .map(|i| (exact(light[i]) - exact(point[i])) * exact(normal[i]))
+            .fold(exact(0.0), |sum, term| sum + term)
+            .cmp(&exact(0.0));
+        // The mirrored light runs nearly into the eye: where it counts, the colour is about 1, and 0 elsewhere.
+        let material = &Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: 1.0 };
+        let incident = unit(towards(light, point));
+        for (up, above) in [(unit(normal), Ordering::Greater), (-unit(normal), Ordering::Less)] {
+            let seen = SurfacePoint {
+                point,
+                direction: -incident - 0.1 * up,
+                normal,
+                surface: DVec3::ONE,
+                material,
+            };
+            let lights = [PointLight { position: light, color: DVec3::ONE }];
+            let color = seen.shaded(&lights).x;
+            assert!(
+                if side == above { color > 0.9 } else { color == 0.0 },
+                "{light:?} is {side:?} of {normal:?} at {point:?}, and the colour {color}"
+            );
+            let mut colors = [DVec3::NAN; 3];
+            phong_batch(&[seen; 3], &lights, &mut colors);
+            assert_eq!(colors, [DVec3::splat(color); 3], "together");
+        }
+        (-incident).dot(unit(normal)).partial_cmp(&0.0) != Some(side)
+    }
+
+    /// The number of random cases: ten thousand, or a million with the environment variable `RT_LONG` set.
+    fn cases() -> usize {
+        if std::env::var_os("RT_LONG").is_some() { 1_000_000 } else { 10_000 }
+    }
+
+    #[test]
+    fn a_light_beside_the_plane_of_the_surface_has_its_exact_side() {
+        let mut random = Random(1);
+        let mut rounding_would_err = 0;
+        for _ in 0..cases() {
+            let scale = random.power_of_two(-900..900);
+            let point = scale * random.power_of_two(-30..30) * random.vector();
+            let normal = random.power_of_two(-900..900) * random.vector();
+            let across = random.vector();
+            // In the plane within rounding, and then a few doubles away.
+            let z = -(across.x * normal.x + across.y * normal.y) / normal.z;
+            let mut light = point + scale * DVec3 { z, ..across };
+            for axis in 0..3 {
+                for _ in 0..random.below(3) {
+                    light[axis] = light[axis].next_up();
+                }
+            }
+            if light != point && light.is_finite() {
+                rounding_would_err += usize::from(check_side(point, light, normal));
+            }
+        }
+        assert!(rounding_would_err > cases() / 10, "{rounding_would_err}");
+    }
+
+    #[test]
+    fn a_light_in_the_plane_of_the_surface_is_on_no_side() {
+        let mut random = Random(2);
+        let mut rounding_would_err = 0;
+        for _ in 0..cases() {
+            // Small integers: corners, normal and light are exact.
+            let mut corner = || (100.0 * random.vector()).round();
+            let [point, edge, other] = [corner(), corner(), corner()];
+            let scale = random.power_of_two(-400..400);
+            let normal = edge.cross(other) * random.power_of_two(-400..400);
+            let [s, t] = [random.below(100), random.below(100)].map(|n| n as f64 - 50.0);
+            let light = (point + s * edge + t * other) * scale;
+            if normal != DVec3::ZERO && light != point * scale {
+                rounding_would_err += usize::from(check_side(point * scale, light, normal));
+            }
+        }
+        assert!(rounding_would_err > cases() / 10, "{rounding_would_err}");
+    }
+
+    #[test]
+    fn the_side_of_a_light_is_exact_where_the_difference_is_not_a_double() {
+        let top = f64::MAX;
+        let least = f64::from_bits(1);
+        let mut rounding_would_err = 0;
+        for (point, light, normal) in [
+            // by one unit of the last place, beside a difference beyond f64
+            (DVec3::new(-top, -top, 0.0), DVec3::new(top, top.next_down(), 0.0), DVec3::new(1.0, -1.0, 0.0)),
+            (DVec3::new(-top, -top, 0.0), DVec3::new(top, top, 0.0), DVec3::new(1.0, -1.0, 0.0)),
+            (DVec3::new(-top, -top, -top), DVec3::new(top, -top, least), DVec3::new(least, top, -least)),
+            // by less than the difference keeps
+            (DVec3::new(1e-30, 0.0, 0.0), DVec3::new(0.5, 0.5, 0.0), DVec3::new(1.0, -1.0, 0.0)),
+            (DVec3::new(least, 0.0, 0.0), DVec3::new(1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, least)),
+            (DVec3::ZERO, DVec3::new(least, least, -least), DVec3::new(least, -least, 0.0)),
+        ] {
+            rounding_would_err += usize::from(check_side(point, light, normal));
+        }
+        assert!(rounding_would_err >= 3, "{rounding_would_err}");
+    }
+
+    #[test]
+    fn no_term_is_negative_where_rounding_puts_the_light_behind() {
+        let material = Material { ambient: 0.0, diffuse: 1.0, specular: 0.0, shininess: 1.0 };
+        let mut random = Random(3);
+        for _ in 0..cases() {
+            let (normal, across, point) = (random.vector(), random.vector(), random.vector());
+            let z = -(across.x * normal.x + across.y * normal.y) / normal.z;
+            let light = PointLight { position: point + DVec3 { z, ..across }, color: DVec3::ONE };
+            let color = phong(point, -normal, normal, DVec3::ONE, &material, &[light]);
+            assert!((0.0..1e-9).contains(&color.x), "{color} from {light:?} at {point:?}, {normal:?}");
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 use rt_math::exact::{dot_with_error, reflect_if_certain};
 
-use crate::phong::{Material, PointLight, ordinary_unit, phong};
+use crate::phong::{COSINE_ERROR, Material, PointLight, ordinary_unit, phong};
 use crate::power::ordinary_power;
 
 /// Points that go together.
@@ -166,7 +166,9 @@ fn group<const FMA: bool>(points: &[SurfacePoint], lights: &[PointLight]) -> Vec
         for i in 0..LANES {
             let (incident, ordinary) = ordinary_unit(point.at(i) - light.position);
             let (reflected, certain) = reflect_if_certain::<FMA>(incident, normal.at(i));
-            cosine[i] = if ordinary { (-incident).dot(normal.at(i)) } else { f64::NAN };
+            cosine[i] = (-incident).dot(normal.at(i));
+            // On which side the light is, must be beyond rounding.
+            cosine[i] = if ordinary & (cosine[i].abs() > COSINE_ERROR) { cosine[i] } else { f64::NAN };
             alignment[i] = if certain { (-direction.at(i)).dot(reflected) } else { f64::NAN };
         }
         for i in 0..LANES {

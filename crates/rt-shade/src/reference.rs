@@ -1,8 +1,10 @@
-//! What the tests compare with: the same functions evaluated to 320 bits, by a library that shares no code with ours.
+//! What the tests compare with: the same functions evaluated to 320 bits, and rational numbers, by a library that shares no
+//! code with ours.
 
 use dashu::Integer;
 use dashu::float::FBig;
 use dashu::float::round::mode::HalfEven;
+use dashu::rational::Relaxed;
 use glam::DVec3;
 
 /// A binary number of 320 bits.
@@ -13,6 +15,11 @@ const BITS: usize = 320;
 /// Returns the double exactly.
 pub(crate) fn big(x: f64) -> Big {
     Big::try_from(x).expect("the number is finite").with_precision(BITS).value()
+}
+
+/// Returns the double as an exact rational number.
+pub(crate) fn exact(x: f64) -> Relaxed {
+    Relaxed::try_from(x).expect("the number is finite")
 }
 
 /// Returns a quotient of two integers.
