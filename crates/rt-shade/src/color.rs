@@ -27,7 +27,7 @@ pub fn clamp(color: DVec3) -> DVec3 {
     DVec3::from_array(color.to_array().map(clamp_channel))
 }
 
-/// Returns the sample that stores the channel `c`: `⌊maxval c + ½⌋` of `c` clamped to `0..=1`, in double arithmetic.
+/// Returns the sample that stores the channel `c`: `⌊maxval c + ½⌋` of `c` clamped to `0..=1`, exactly for the double given.
 ///
 /// NaN becomes 0, and an infinity the end on its side. For each `maxval`, `to_sample(s / maxval, maxval)` is `s`.
 ///
@@ -35,14 +35,34 @@ pub fn clamp(color: DVec3) -> DVec3 {
 /// use rt_shade::color::to_sample;
 ///
 /// assert_eq!([-1.0, 0.5, 1.0, f64::NAN].map(|c| to_sample(c, 255)), [0, 128, 255, 0]);
+/// // the double 0.7 lies below 7/10, and 255 times it below 178.5, to which the product of doubles rounds
+/// assert_eq!((to_sample(0.7, 255), 255.0 * 0.7), (178, 178.5));
 /// ```
 pub fn to_sample(c: f64, maxval: u16) -> u16 {
-    let scaled = f64::from(maxval) * clamp_channel(c) + 0.5;
+    let c = clamp_channel(c);
+    // Two roundings, neither of which passes a half or a whole number: they may lift a sample just below a half onto the
+    // next whole number, and do nothing else.
+    let scaled = f64::from(maxval) * c + 0.5;
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a cast rounds towards zero: the floor that is wanted"
     )]
     let sample = scaled as u16; // 65535.5 at most
+    if f64::from(sample) == scaled { integer_sample(c, maxval) } else { sample }
+}
+
+/// [`to_sample`] in integers, for a channel in `0..=1`.
+fn integer_sample(c: f64, maxval: u16) -> u16 {
+    // c = significand 2^(-63 - shift), the significand's top bit being set, and
+    // 4 maxval significand 2^-64 is 2 maxval c 2^shift. ⌊x + ½⌋ = ⌊(⌊2x⌋ + 1) / 2⌋: cutting bits off changes no floor.
+    let bits = c.to_bits();
+    let significand = 1 << 63 | bits << 11;
+    let shift = 1023 - (bits >> 52);
+    let product = u128::from(significand) * u128::from(4 * u64::from(maxval));
+    // Of numbers below 2^18 a shift by 63 leaves 0, as any longer one would: zero and subnormal numbers are among these.
+    let doubled = (product >> 64) as u64 >> shift.min(63);
+    #[expect(clippy::cast_possible_truncation, reason = "c is at most 1, so this is at most maxval")]
+    let sample = ((doubled + 1) >> 1) as u16;
     sample
 }
 
@@ -101,9 +121,55 @@ mod tests {
         }
 
         #[test]
+        fn samples_of_any_channel_are_exact(c in 0.0f64..=1.0, e in 0i32..1100, maxval in 1u16..) {
+            check_sample(c, maxval);
+            check_sample(c * 2f64.powi(-(e / 2)) * 2f64.powi(e / 2 - e), maxval); // down to 0
+            check_sample(c.round(), maxval);
+        }
+
+        #[test]
         fn a_brighter_channel_has_no_darker_sample(a in -0.5f64..1.5, b in -0.5f64..1.5, maxval in 1u16..) {
             prop_assert!(to_sample(a.min(b), maxval) <= to_sample(a.max(b), maxval));
         }
+    }
+
+    /// Checks that `⌊maxval c + ½⌋` is what [`to_sample`] gives, for a channel in `0..=1`.
+    fn check_sample(c: f64, maxval: u16) {
+        use crate::reference::exact;
+        let sample = to_sample(c, maxval);
+        assert_eq!(integer_sample(c, maxval), sample, "{c:e} of {maxval}, in integers");
+        let [doubled, below] =
+            [exact(c) * exact(f64::from(2 * u32::from(maxval))), exact(2.0 * f64::from(sample) - 1.0)];
+        assert!(below <= doubled && doubled < below + exact(2.0), "{c:e} of {maxval} gives {sample}");
+    }
+
+    #[test]
+    fn samples_are_exact_beside_every_step() {
+        let mut rounding_would_err = 0;
+        for maxval in
+            [1, 2, 3, 5, 7, 100, 254, 255, 256, 257, 1000, 1023, 4095, 32767, 32768, 54321, 65534, 65535]
+        {
+            for doubled in 0..=2 * u32::from(maxval) {
+                // k / maxval and (k + 1/2) / maxval, and the doubles around them
+                let c = f64::from(doubled) / f64::from(2 * u32::from(maxval));
+                for c in [c.next_down().next_down(), c.next_down(), c, c.next_up(), c.next_up().next_up()] {
+                    if (0.0..=1.0).contains(&c) {
+                        check_sample(c, maxval);
+                        let rounded = (f64::from(maxval) * c + 0.5).floor();
+                        rounding_would_err += u32::from(rounded != f64::from(to_sample(c, maxval)));
+                    }
+                }
+            }
+        }
+        assert!(rounding_would_err > 10_000, "{rounding_would_err}");
+    }
+
+    #[test]
+    fn samples_of_short_decimals_are_exact() {
+        for maxval in [255, 65535] {
+            (0..=10_000).for_each(|i| check_sample(f64::from(i) / 10_000.0, maxval));
+        }
+        assert_eq!(to_sample(0.7, 255), 178);
     }
 
     #[test]
