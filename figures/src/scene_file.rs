@@ -4,6 +4,8 @@
 //! keys are refused there. Then every number is checked, names are resolved and files are read. The first thing that
 //! is wrong ends it, told as `file:line:column: message`.
 
+mod elements;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
@@ -27,6 +29,10 @@ use crate::texture_file;
 
 /// The largest scene file that is read. More spheres than fit belong into a bulk file.
 const MAX_BYTES: u64 = 256 << 20;
+
+/// Of a longer scene file the elements are parsed in groups of about this many bytes, so that memory is that of the text,
+/// twice, and of the scene.
+const GROUP_BYTES: usize = 1 << 18;
 
 /// What is wrong with a scene file, and where.
 #[derive(Debug, thiserror::Error)]
@@ -296,33 +302,29 @@ pub fn embedded(text: &str, name: &str) -> Result<Scene, SceneError> {
 }
 
 fn parse(text: &str, name: &str, files: Files<'_>) -> Result<Scene, SceneError> {
-    Checker { text, name, files }.scene()
+    Checker { text, name, files, offset: 0 }.scene(GROUP_BYTES)
 }
 
 /// Turns tables into the scene. Its methods check one kind of value each.
+#[derive(Clone, Copy)]
 struct Checker<'a> {
     text: &'a str,
     name: &'a str,
     files: Files<'a>,
+    /// Where in the text the part begins in which spans count.
+    offset: usize,
 }
 
 impl Checker<'_> {
-    fn scene(&self) -> Result<Scene, SceneError> {
-        let table: SceneTable = toml::from_str(self.text).map_err(|error| {
-            let message = error.message().trim().replace('\n', ", ").replace('`', "\"");
-            let message = escaped(&message).into_owned();
-            self.refuse(error.span().unwrap_or(0..0), Problem::Syntax(message))
-        })?;
+    /// Checks all of the text. If it is longer than `group`, its elements are parsed in groups of about that size.
+    fn scene(&self, group: usize) -> Result<Scene, SceneError> {
+        let (table, groups) = self.tables(group)?;
         let mut scene = Scene::empty();
-        if let Some(camera) = table.camera {
-            scene.camera = self.camera(&camera)?;
+        if let Some(camera) = &table.camera {
+            scene.camera = self.camera(camera)?;
         }
         if let Some(color) = &table.background {
             scene.background = self.color("background", color)?;
-        }
-        for light in &table.light {
-            let color = light.color.as_ref().map_or(Ok(DVec3::ONE), |color| self.color("color", color))?;
-            scene.lights.push(PointLight { position: self.point("position", &light.position)?, color });
         }
         let mut materials = BTreeMap::new();
         for (material, table) in &table.material {
@@ -331,19 +333,14 @@ impl Checker<'_> {
                 self.push(&mut scene.looks, table.span(), |_| self.look(material, table))?,
             );
         }
-        for sphere in &table.sphere {
-            let center = self.point("center", &sphere.center)?;
-            let radius = self.not_negative("radius", &sphere.radius)?;
-            let look = self.material(&materials, &sphere.material)?;
-            scene.spheres.push(Sphere::new(center, radius).expect("center and radius were checked"));
-            scene.sphere_looks.push(look);
+        let mut bare = None;
+        self.elements(&table, &materials, &mut bare, &mut scene)?;
+        for range in groups {
+            let part = Self { offset: range.start, ..*self };
+            part.elements(&part.parsed(&self.text[range])?, &materials, &mut bare, &mut scene)?;
         }
         for spheres in &table.spheres {
             self.spheres(spheres, &materials, &mut scene)?;
-        }
-        let mut bare = None;
-        for triangle in &table.triangle {
-            self.triangle(triangle, &materials, &mut bare, &mut scene)?;
         }
         if scene.vertex_colors.iter().all(Option::is_none) {
             scene.vertex_colors.clear();
@@ -362,6 +359,54 @@ impl Checker<'_> {
             return Err(self.refuse(0..0, Problem::Empty));
         }
         Ok(scene)
+    }
+
+    /// The tables of the text, or those of a long one without its elements, and where groups of these are.
+    fn tables(&self, group: usize) -> Result<(SceneTable, Vec<Range<usize>>), SceneError> {
+        let long = self.text.len() > group;
+        if let Some(elements::Cut { rest, groups }) = long.then(|| elements::cut(self.text, group)).flatten()
+        {
+            let table = self.parsed(&rest)?;
+            // Elements may be left whose headers are written otherwise: then their order among the others would be lost.
+            if table.light.is_empty() && table.sphere.is_empty() && table.triangle.is_empty() {
+                return Ok((table, groups));
+            }
+        }
+        Ok((self.parsed(self.text)?, Vec::new()))
+    }
+
+    /// Parses a document: all of the text, or a part of it that begins at `offset`.
+    fn parsed(&self, text: &str) -> Result<SceneTable, SceneError> {
+        toml::from_str(text).map_err(|error| {
+            let message = error.message().trim().replace('\n', ", ").replace('`', "\"");
+            let message = escaped(&message).into_owned();
+            self.refuse(error.span().unwrap_or(0..0), Problem::Syntax(message))
+        })
+    }
+
+    /// Adds the lights, spheres and triangles of a table to the scene.
+    fn elements(
+        &self,
+        table: &SceneTable,
+        materials: &BTreeMap<&str, u32>,
+        bare: &mut Option<u32>,
+        scene: &mut Scene,
+    ) -> Result<(), SceneError> {
+        for light in &table.light {
+            let color = light.color.as_ref().map_or(Ok(DVec3::ONE), |color| self.color("color", color))?;
+            scene.lights.push(PointLight { position: self.point("position", &light.position)?, color });
+        }
+        for sphere in &table.sphere {
+            let center = self.point("center", &sphere.center)?;
+            let radius = self.not_negative("radius", &sphere.radius)?;
+            let look = self.material(materials, &sphere.material)?;
+            scene.spheres.push(Sphere::new(center, radius).expect("center and radius were checked"));
+            scene.sphere_looks.push(look);
+        }
+        for triangle in &table.triangle {
+            self.triangle(triangle, materials, bare, scene)?;
+        }
+        Ok(())
     }
 
     fn camera(&self, table: &Spanned<CameraTable>) -> Result<Camera, SceneError> {
@@ -567,9 +612,97 @@ impl Checker<'_> {
 
     /// The error `problem` at the start of `span`; lines and columns count from 1, columns in characters.
     fn refuse(&self, span: Range<usize>, problem: Problem) -> SceneError {
-        let before = &self.text[..self.text.floor_char_boundary(span.start)];
+        let before = &self.text[..self.text.floor_char_boundary(self.offset + span.start)];
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
         SceneError { place: format!("{}:{line}:{column}", self.name), problem: Box::new(problem) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a text becomes if it is parsed as a whole, and if each element is parsed by itself.
+    fn both(text: &str) -> [Result<String, String>; 2] {
+        [usize::MAX, 1].map(|group| {
+            let checker = Checker { text, name: "a.toml", files: Files::Embedded, offset: 0 };
+            checker
+                .scene(group)
+                .map(|scene| format!("{scene:?}"))
+                .map_err(|error| format!("{error} {error:?}"))
+        })
+    }
+
+    #[test]
+    fn a_scene_in_parts_is_the_whole_scene() {
+        for figure in crate::figure::FIGURES {
+            let [whole, parts] = both(figure.text);
+            assert!(whole.is_ok() && whole == parts, "figure {}: {whole:?} {parts:?}", figure.number);
+        }
+        let head = "[[sphere]]\ncenter = [0, 0, -3]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 0.5, 0]\n";
+        let element = |i: u32| match i % 3 {
+            0 => format!("[[light]]\nposition = [{i}, 0, 0] # [[light]]\n"),
+            1 => format!("[[ sphere ]]\ncenter = [0, {i}, -3]\nradius = {i}\nmaterial = \"a\"\n"),
+            _ => format!(
+                "[[triangle]]\na = [0, 0, 0]\nb = [{i}, 0, 0]\nc = [0, 0, 1]\ncolors = [\n[1, 0, 0],\n[0, 1, 0], [0, 0, 1]]\n"
+            ),
+        };
+        let elements: String = (1..50).map(element).collect();
+        for text in
+            [head.to_owned() + &elements, elements.clone() + head, elements.clone() + head + &elements]
+        {
+            let [whole, parts] = both(&text);
+            assert!(whole.is_ok() && whole == parts, "{whole:?} {parts:?}");
+        }
+    }
+
+    #[test]
+    fn an_error_in_a_part_has_its_place_in_the_whole() {
+        let good = "[[light]]\nposition = [1, 2, 3]\n";
+        let end =
+            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 1, 1]\n";
+        for bad in [
+            "[[light]]\nposition = [1, nan, 3]\n",
+            "[[light]]\nposition = [1, 2]\n",
+            "[[light]]\nplace = [1, 2, 3]\n",
+            "[[light]]\nposition = [1, 2, 3\n",
+            "[[light]\nposition = [1, 2, 3]\n",
+            "[[light]]\nposition = [1, 2, 3]\nposition = [1, 2, 3]\n",
+            "[[light]]\n",
+            "[[light]]\ncolor = [2, 0, 0]\nposition = [1, 2, 3]\n",
+            "[[sphere]]\ncenter = [0, 0, 0]\nradius = -1\nmaterial = \"a\"\n",
+            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"b\"\n",
+            "[[triangle]]\na = [0, 0, 0]\nb = [0, 0, 0]\nc = [0, 0, 1]\nmaterial = \"a\"\n",
+            "[[lamp]]\nposition = [1, 2, 3]\n",
+            "[[\"light\"]]\nposition = [1, 2, \"3\"]\n",
+            "background = [[light]]\n",
+            "a = \"\"\"\n[[light]]\n\"\"\"\n",
+        ] {
+            let [whole, parts] = both(&(good.repeat(3) + bad + good + end));
+            assert!(whole.is_err() && whole == parts, "{bad}: {whole:?} {parts:?}");
+        }
+        for bad in ["light = []\n", "light = 3\n"] {
+            let [whole, parts] = both(&(bad.to_owned() + good + end));
+            assert!(whole.is_err() && whole == parts, "{bad}: {whole:?} {parts:?}");
+        }
+        for bad in ["[light.more]\n", "[light]\n"] {
+            let [whole, parts] = both(&(good.to_owned() + bad + good + end));
+            assert!(whole.is_err() && parts.is_err(), "{bad}: {whole:?} {parts:?}");
+        }
+    }
+
+    #[test]
+    fn headers_that_are_written_otherwise_keep_their_order() {
+        let end =
+            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 1, 1]\n";
+        let light = |header: &str, x: u32| format!("{header}\nposition = [{x}, 2, 3]\n");
+        let text = light("[[light]]", 1)
+            + &light("[[\"light\"]]", 2)
+            + &light("[['light']]", 3)
+            + &light("[[light]]", 4)
+            + end;
+        let [whole, parts] = both(&text);
+        assert!(whole.is_ok() && whole == parts, "{whole:?} {parts:?}");
     }
 }
