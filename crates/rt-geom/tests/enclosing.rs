@@ -8,7 +8,7 @@
 use dashu::float::{FBig, round::mode::HalfEven};
 use dashu::rational::RBig;
 use glam::DVec3;
-use rt_geom::{Enclosing, Sphere, enclosing_sphere};
+use rt_geom::{Enclosing, HalvingTree, Ray, Sphere, SphereTree, Triangle, enclosing_sphere};
 
 type Number = FBig<HalfEven, 2>;
 
@@ -147,6 +147,42 @@ const CLASSES: &[(&str, Make)] = &[
         let offset = 1e8 * random.point();
         some(random, 2..30, |random| sphere(offset + random.point(), 0.3 * random.unit()))
     }),
+    ("any offset, pair", |random| {
+        let (offset, size) = anywhere(random);
+        some(random, 2..3, |random| sphere(offset + size * random.point(), size * random.unit()))
+    }),
+    ("any offset", |random| {
+        let (offset, size) = anywhere(random);
+        let round = random.below(2) == 0;
+        some(random, 2..17, |random| {
+            let radius = if round { 0.0 } else { size * random.unit() };
+            sphere(offset + size * random.point(), radius)
+        })
+    }),
+    ("any offset, nested", |random| {
+        // Equal centers, or as good as equal; radii that differ by a few units in the last place, or touch from inside.
+        let (offset, size) = anywhere(random);
+        let big = size * (1.0 + random.unit());
+        some(random, 2..9, |random| match random.below(3) {
+            0 => sphere(offset, f64::from_bits(big.to_bits() - random.next() % 4)),
+            1 => sphere(offset + 1e-15 * size * random.point(), big),
+            _ => {
+                let inner = size * random.unit();
+                sphere(offset + (big - inner) * random.direction(), inner)
+            }
+        })
+    }),
+    ("any offset, few units apart", |random| {
+        // Half-way centers and reaches that are doubles.
+        let unit = 10.0_f64.powf(584.0 * random.unit() - 292.0);
+        let unit = f64::from_bits(unit.to_bits() & 0x7ff0_0000_0000_0000);
+        let far = (1_u64 << (52 - random.below(2) * 3)) as f64;
+        some(random, 2..9, |random| {
+            let mut coordinate = || (far + random.below(4) as f64) * unit;
+            let center = DVec3::new(coordinate(), coordinate(), coordinate());
+            sphere(center, random.below(3) as f64 * unit)
+        })
+    }),
     ("nearly degenerate", |random| {
         // Almost flat, almost a line or almost a point, at every thickness.
         let thin = 10.0_f64.powf(-16.0 * random.unit());
@@ -187,6 +223,15 @@ const CLASSES: &[(&str, Make)] = &[
     }),
 ];
 
+/// A point from 10^8 to 10^300 away, and the size of a set there, or both of them 10^-300 times as large: from as large as
+/// its distance to smaller than the spacing of doubles.
+fn anywhere(random: &mut Random) -> (DVec3, f64) {
+    let distance = 10.0_f64.powf(8.0 + 292.0 * random.unit());
+    let distance = if random.below(4) == 0 { distance * 1e-300 } else { distance };
+    let direction = if random.below(4) == 0 { DVec3::X } else { random.direction() };
+    (distance * direction, distance * 10.0_f64.powf(-18.0 * random.unit()))
+}
+
 fn some(
     random: &mut Random,
     sizes: std::ops::Range<usize>,
@@ -209,9 +254,11 @@ fn contains(outer: &Sphere, inner: &Sphere) -> bool {
     distance <= room
 }
 
-/// What the oracle finds: a lower bound of the radius, and the radius that the best center needs once rounded to doubles.
+/// What the oracle finds: a lower bound of the least radius and an upper one, which is next to it if the support is right, and
+/// the radius that the best center needs once rounded to doubles.
 struct Certificate {
     bound: Number,
+    ceiling: Number,
     floor: Number,
 }
 
@@ -341,10 +388,11 @@ fn certificate(spheres: &[Sphere], support: &[Sphere]) -> Option<Certificate> {
     let bound = mean / &total - number(2.0) * most(&x) * root(dot(&pull, &pull)) / total;
     let bound = if bound > number(largest.radius()) { bound } else { number(largest.radius()) };
     let rounded: Point = std::array::from_fn(|i| number(x[i].to_f64().value()));
-    Some(Certificate { bound, floor: most(&rounded) })
+    Some(Certificate { bound, ceiling: most(&x), floor: most(&rounded) })
 }
 
-/// The excess of an answer over what doubles can express, relative to the radius.
+/// The excess of an answer over what doubles can express, relative to the radius. (Any center that costs at most one spacing of
+/// doubles is good enough; that shows where sets lie anywhere.)
 fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
     for sphere in spheres {
         assert!(
@@ -352,6 +400,12 @@ fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
             "{class}: {sphere:?} sticks out of {answer:?} in {spheres:?}"
         );
     }
+    let less = answer.sphere.radius().next_down();
+    let less = Sphere::new(answer.sphere.center(), less);
+    assert!(
+        less.is_none_or(|less| !spheres.iter().all(|sphere| contains(&less, sphere))),
+        "{class}: a smaller radius than that of {answer:?} encloses {spheres:?}"
+    );
     assert!(answer.lower_bound <= answer.sphere.radius(), "{class}: {answer:?}");
     let support: Vec<Sphere> = answer.support().iter().map(|&index| spheres[index]).collect();
     assert!((1..=4).contains(&support.len()));
@@ -375,7 +429,7 @@ fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
     let radius = number(answer.sphere.radius());
     // The bound that the answer states is below what every enclosing sphere needs.
     assert!(
-        number(answer.lower_bound) <= certificate.floor,
+        number(answer.lower_bound) <= certificate.ceiling,
         "{class}: the bound of {answer:?} is too high in {spheres:?}"
     );
     let floor =
@@ -384,7 +438,8 @@ fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
     let spacing = answer.sphere.center().abs().max_element() * f64::EPSILON / answer.sphere.radius();
     let tight = tight.to_f64().value();
     assert!(tight <= 1e-15 + 2.0 * spacing, "{class}: {answer:?} is not minimal: {tight:e} in {spheres:?}");
-    ((radius - floor) / number(answer.sphere.radius())).to_f64().value()
+    let free = if class.starts_with("any offset") { spacing } else { 0.0 };
+    ((radius - floor) / number(answer.sphere.radius())).to_f64().value() - free
 }
 
 #[test]
@@ -470,6 +525,36 @@ fn large_sets_are_enclosed_and_minimal() {
             }
         }
         assert!(answer.sphere.radius() - answer.lower_bound <= 1e-15 * answer.sphere.radius(), "{answer:?}");
+    }
+}
+
+#[test]
+fn trees_of_two_balls_and_a_triangle_are_built_anywhere() {
+    let mut random = Random(19);
+    for round in 0..300 {
+        let (offset, size) = if round == 0 { (DVec3::splat(1e14), 1.0) } else { anywhere(&mut random) };
+        let spheres = vec![
+            sphere(offset + size * random.point(), size * random.unit()),
+            sphere(offset + size * random.point(), size * random.unit()),
+        ];
+        let [a, b, c] = [(); 3].map(|()| offset + size * random.point());
+        let triangles = vec![Triangle::new(a, b, c).expect("finite")];
+        let fast = SphereTree::new(spheres.clone(), triangles.clone());
+        let halves = HalvingTree::new(spheres.clone(), triangles.clone());
+        for target in [spheres[0].center(), spheres[1].center(), (a + b + c) / 3.0, a] {
+            let Some(ray) = Ray::new(DVec3::ZERO, target) else { continue };
+            let range = 0.0..f64::INFINITY;
+            let plain = spheres
+                .iter()
+                .map(|sphere| sphere.closest(&ray, range.clone()))
+                .chain([triangles[0].closest(&ray, range.clone())])
+                .enumerate()
+                .filter_map(|(index, t)| t.map(|t| (t, index)))
+                .min_by(|x, y| x.0.total_cmp(&y.0));
+            for hit in [fast.closest(&ray, range.clone()), halves.closest(&ray, range.clone())] {
+                assert_eq!(hit.map(|hit| (hit.t, hit.index)), plain, "{spheres:?} {triangles:?} {ray:?}");
+            }
+        }
     }
 }
 

@@ -4,12 +4,13 @@
 //! Reaches are computed in double-double arithmetic, four spheres side by side. `docs/numerics.md`, section 8, proves
 //! every bound used here.
 
-use fearless_simd::{Simd, f64x4, prelude::*};
+use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use glam::DVec3;
 use rt_math::exact::{self as scalar, Dyadic, two_prod};
 
 use super::basis::{Tangent, offset};
 use super::real::{Wide, dot};
+use super::stage::asked;
 use crate::Sphere;
 use crate::simd::has_fma;
 
@@ -135,27 +136,65 @@ fn round_up<S: Simd>(simd: S, high: f64x4<S>, low: f64x4<S>) -> f64 {
 
 /// Moves the center of `tangent` to the doubles nearest to the true center, and brackets the radius there.
 ///
-/// Returns the bracket, a lower bound for the radius of any sphere that encloses the spheres of `tangent`, and whether
-/// the nearest doubles are clear.
+/// Returns the bracket, and a lower bound for the radius of any sphere that encloses the spheres of `tangent`.
+pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64) {
+    let first = &all[tangent.support()[0]];
+    if tangent.support().len() == 1 {
+        let radius = first.radius();
+        return (Bracket { center: first.center(), low: radius, high: radius }, radius);
+    }
+    let [_, b, c, d] = tangent.padded();
+    let spheres = [first, &all[b], &all[c], &all[d]];
+    let far = first.center().abs().max_element() > FAR * (tangent.rho + first.radius());
+    if !far {
+        let (bracket, bound, clear) = certify_in_place(simd, tangent, spheres);
+        if clear {
+            return (bracket, bound);
+        }
+    }
+    certify_apart(simd, tangent, spheres)
+}
+
+/// Beyond so many radii from the origin the rounding of the center moves it too far for the lower bound to be sharp.
+const FAR: f64 = 1_048_576.0;
+
+/// [`certify`] for spheres so far from the origin that doubles lie far apart there: the lower bound is found on a copy near
+/// the origin, and of the doubles around the center the best is taken.
+#[cold]
 #[inline(never)]
-pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64, bool) {
+fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64) {
+    let origin = spheres[0].center();
+    let mut lost = 0.0_f64;
+    let moved = spheres.map(|sphere| {
+        let to = sphere.center();
+        let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_diff(to[axis], origin[axis]));
+        lost = lost.max(x.1.abs() + y.1.abs() + z.1.abs());
+        Sphere::new(DVec3::new(x.0, y.0, z.0), sphere.radius()).unwrap_or(*sphere)
+    });
+    let (bracket, bound, _) = certify_in_place(simd, tangent, moved.each_ref());
+    // Moving a center changes the radius by at most as much.
+    let bound = if lost > 0.0 { (bound - lost * (1.0 + 8.0 * U)).next_down() } else { bound };
+    let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_sum(origin[axis], bracket.center[axis]));
+    let (center, rest) = (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1));
+    let around = Bracket::around(simd, center, rest, spheres, tangent.support().len());
+    (around, bound.max(spheres[0].radius()))
+}
+
+/// Brackets the radius around the doubles nearest to the center of `tangent`, whose spheres are given, the largest first.
+///
+/// Returns the bracket, a lower bound, and whether the nearest doubles are clear.
+#[inline(never)]
+fn certify_in_place<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64, bool) {
     simd.vectorize(
         #[inline(always)]
-        || certify_here(simd, tangent, all),
+        || certify_here(simd, tangent, spheres),
     )
 }
 
 #[inline(always)]
-fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64, bool) {
-    let support = tangent.support();
-    let first = &all[support[0]];
+fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64, bool) {
+    let first = spheres[0];
     let origin = first.center();
-    if support.len() == 1 {
-        let radius = first.radius();
-        return (Bracket { center: origin, low: radius, high: radius }, radius, true);
-    }
-    let [_, b, c, d] = tangent.padded();
-    let spheres = [first, &all[b], &all[c], &all[d]];
     let [k1, k2, k3] = tangent.dual;
     let q = DVec3::from(tangent.q);
     let (k1, k2, k3) = (DVec3::from(k1), DVec3::from(k2), DVec3::from(k3));
@@ -197,9 +236,9 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
             continue;
         }
         let still = !good;
-        // Where doubles lie far apart, a center half-way between two is one for the cold path, which tries both.
+        // Where doubles lie far apart, of a center half-way between two both are to be tried.
         let coarse = next.abs().max_element() * U > 32.0 * U * base;
-        let settled = !(coarse && half_way(next, wish - step));
+        let clear = !(coarse && half_way(next, wish - step));
         let (next, step, length) = if still { (center, DVec3::ZERO, 0.0) } else { (next, step, length) };
         let along = if still { none } else { along };
         let error = if still { reach.error } else { error };
@@ -227,7 +266,7 @@ fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Br
         let sum = base + below;
         let bound = sum - if below - (sum - base) < 0.0 { sum * SPACING } else { 0.0 };
         let bound = if bound > first.radius() { bound } else { first.radius() };
-        return (bracket, bound, settled);
+        return (bracket, bound, clear);
     }
 }
 
@@ -252,6 +291,48 @@ const MAX_ROUNDS: usize = 4;
 const BALANCE: f64 = 1.0 / 67_108_864.0; // 2^-26
 
 impl Bracket {
+    /// Brackets the radius that encloses four spheres (of which only the first `count` differ) around one of the eight
+    /// doubles next to `center + rest`: the one from which they reach least far, as far as doubles can tell.
+    #[inline(never)]
+    fn around<S: Simd>(simd: S, center: DVec3, rest: DVec3, spheres: [&Sphere; 4], count: usize) -> Self {
+        simd.vectorize(
+            #[inline(always)]
+            || Self::around_here(simd, center, rest, spheres, count),
+        )
+    }
+
+    #[inline(always)]
+    fn around_here<S: Simd>(
+        simd: S,
+        center: DVec3,
+        rest: DVec3,
+        spheres: [&Sphere; 4],
+        count: usize,
+    ) -> Self {
+        let nearest = f64x4::simd_from(simd, [center.x, center.y, center.z, 0.0]);
+        let rest = f64x4::simd_from(simd, [rest.x, rest.y, rest.z, 0.0]);
+        let other = nearest + (nearest.abs() * SPACING).copysign(rest);
+        let other = rest.simd_eq(f64x4::splat(simd, 0.0)).select(nearest, other);
+        let ([a, b, c, _], [d, e, f, _]): ([f64; 4], [f64; 4]) = (nearest.into(), other.into());
+        let x = f64x8::simd_from(simd, [a, d, a, d, a, d, a, d]);
+        let y = f64x8::simd_from(simd, [b, b, e, e, b, b, e, e]);
+        let z = f64x8::simd_from(simd, [c, c, c, c, f, f, f, f]);
+        let mut most = f64x8::splat(simd, 0.0);
+        for sphere in &spheres[..count] {
+            let to = sphere.center();
+            let (dx, dy, dz) = (x - to.x, y - to.y, z - to.z);
+            most = most.max((dx * dx + dy * dy + dz * dz).sqrt() + sphere.radius());
+        }
+        // (Which it is cannot be foretold: no branch.)
+        let least = f64x8::splat(simd, most.reduce_min());
+        let best = most.simd_le(least).to_bitmask().trailing_zeros();
+        let pick = |bit: u32, nearest: f64, other: f64| if best >> bit & 1 == 1 { other } else { nearest };
+        let center = DVec3::new(pick(0, a, d), pick(1, b, e), pick(2, c, f));
+        let mut bracket = Self { center, low: 0.0, high: 0.0 };
+        bracket.enclose_here(simd, spheres);
+        bracket
+    }
+
     /// Widens the bracket so that it holds for four more spheres (which may repeat).
     #[inline(never)]
     pub(super) fn enclose<S: Simd>(&mut self, simd: S, spheres: [&Sphere; 4]) {
@@ -289,22 +370,46 @@ pub(super) fn enclose_all(bracket: &mut Bracket, spheres: &[Sphere]) {
     }
 }
 
+/// Holds what decides whether one sphere contains another, for any doubles: differences are multiples of 2^-1074 below
+/// 2^1025, which takes 35 limbs; their squares and the sum of three take 71, and the rounding of the root 68.
+type Number = Dyadic<72>;
+
+fn difference(a: f64, b: f64) -> Number {
+    Number::from_f64(a) - Number::from_f64(b)
+}
+
+fn square_of_distance(a: DVec3, b: DVec3) -> Number {
+    difference(a.x, b.x).square() + difference(a.y, b.y).square() + difference(a.z, b.z).square()
+}
+
+/// Whether a sphere with radius `outer` contains one with radius `inner`, given the square of the distance of the centers.
+fn holds(outer: f64, inner: f64, square: &Number) -> bool {
+    asked();
+    let room = difference(outer, inner);
+    !room.sign().is_lt() && *square <= room.square()
+}
+
 /// Whether `sphere` lies inside the sphere around `center` with `radius`, its boundary included: exactly.
 #[cold]
 #[inline(never)]
 pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> bool {
-    // Differences of doubles are multiples of 2^-1074 below 2^1025: 35 limbs; their squares take twice that.
-    type Number = Dyadic<72>;
-    let difference = |a: f64, b: f64| Number::from_f64(a) - Number::from_f64(b);
-    let room = difference(radius, sphere.radius());
-    if room.sign().is_lt() {
-        return false;
+    holds(radius, sphere.radius(), &square_of_distance(center, sphere.center()))
+}
+
+/// The smallest double that is not below the reach of `sphere` from `center`; infinite if no finite one is.
+#[cold]
+#[inline(never)]
+pub(super) fn smallest_radius(center: DVec3, sphere: &Sphere) -> f64 {
+    asked();
+    let square = square_of_distance(center, sphere.center());
+    // The reach rounded to nearest: that double or the next.
+    let inner = Number::from_f64(sphere.radius());
+    let nearest = Number::root(&inner, false, &square, &Number::power_of_two(0));
+    if nearest.is_infinite() || holds(nearest, sphere.radius(), &square) {
+        nearest
+    } else {
+        nearest.next_up()
     }
-    let offset = sphere.center();
-    let square = difference(center.x, offset.x).square()
-        + difference(center.y, offset.y).square()
-        + difference(center.z, offset.z).square();
-    square <= room.square()
 }
 
 /// The minimal sphere of two spheres, in closed form: the bracket, and a lower bound.
@@ -361,26 +466,34 @@ fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Optio
     let size = (center[0].abs() + center[1].abs()) + center[2].abs();
     let bend = away * away / nearest;
     let error = radius * REACH_ERROR + bend + 16.0 * U * (away + U * size);
+    let down = radius_low - radius * REACH_ERROR;
+    let sum = radius + down;
+    let bound = if down - (sum - radius) < 0.0 { sum.next_down() } else { sum };
+    let place = |v: f64x4<S>| DVec3::new(v[0], v[1], v[2]);
+    if error > radius * PAIR_ERROR {
+        return Some((Bracket::around(simd, place(center), place(-e), [a, b, a, b], 2), bound));
+    }
     let up = |low: f64| {
         let sum = radius + low;
         if low - (sum - radius) > 0.0 { sum.next_up() } else { sum }
     };
     let bracket = Bracket {
-        center: DVec3::new(center[0], center[1], center[2]),
+        center: place(center),
         low: up((radius_low + along) - error),
         high: up((radius_low + along) + error),
     };
-    let down = radius_low - radius * REACH_ERROR;
-    let sum = radius + down;
-    let bound = if down - (sum - radius) < 0.0 { sum.next_down() } else { sum };
     Some((bracket, bound))
 }
+
+/// With a larger error of the radius, as a share of it, the reaches are computed anew at the center rounded to doubles.
+/// (With a smaller one, hardly one radius in a thousand is so close to a double that exact integers are asked.)
+const PAIR_ERROR: f64 = 1.0 / 18_446_744_073_709_551_616.0; // 2^-64
 
 /// With the center closer than this to that of a sphere, as a share of the radius, the bend of the distance is not
 /// small beside a unit in the last place.
 const NEARLY_INSIDE: f64 = 1.0 / 1_048_576.0;
 
-/// The smallest double of the bracket that encloses all spheres.
+/// The smallest double of the bracket that encloses all spheres. Asks integers at most three questions a sphere.
 #[cold]
 #[inline(never)]
 pub(super) fn settle(bracket: &Bracket, spheres: &[Sphere]) -> f64 {
@@ -390,8 +503,8 @@ pub(super) fn settle(bracket: &Bracket, spheres: &[Sphere]) -> f64 {
         if reach * (1.0 + 16.0 * U) <= radius {
             continue;
         }
-        while radius < bracket.high && !contains_exactly(bracket.center, radius, sphere) {
-            radius = radius.next_up();
+        if radius < bracket.high && !contains_exactly(bracket.center, radius, sphere) {
+            radius = smallest_radius(bracket.center, sphere);
         }
     }
     radius

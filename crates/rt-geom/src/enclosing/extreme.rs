@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::certify::{U, contains_exactly};
+use super::certify::{U, contains_exactly, smallest_radius};
 use super::{Enclosing, enclosing_sphere};
 use crate::Sphere;
 
@@ -45,19 +45,16 @@ pub(super) fn extreme(spheres: &[Sphere]) -> Option<Enclosing> {
     let down = found.center();
     let center = DVec3::new(scale.down(down.x), scale.down(down.y), scale.down(down.z)) + equal;
     // The copy may have lost the last bits of small coordinates, and the center those of a subnormal one: judge the
-    // spheres near the boundary themselves.
-    let mut radius = scale.down(found.radius());
-    if scale.up(radius) < found.radius() {
-        radius = radius.next_up();
-    }
+    // spheres near the boundary themselves. Integers are asked at most three questions a sphere.
     let rounded = center - equal;
     let rounded = DVec3::new(scale.up(rounded.x), scale.up(rounded.y), scale.up(rounded.z));
-    for (sphere, copy) in spheres.iter().zip(&scaled) {
-        let reach = (copy.center() - rounded).length() + copy.radius();
-        if reach * (1.0 + 32.0 * U) > scale.up(radius) {
-            while radius.is_finite() && !contains_exactly(center, radius, sphere) {
-                radius = radius.next_up();
-            }
+    let reach = |copy: &Sphere| (copy.center() - rounded).length() + copy.radius();
+    let reaches = || scaled.iter().map(reach).enumerate();
+    let (farthest, most) = reaches().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let mut radius = smallest_radius(center, &spheres[farthest]);
+    for (index, reach) in reaches() {
+        if reach > most * (1.0 - 32.0 * U) && !contains_exactly(center, radius, &spheres[index]) {
+            radius = smallest_radius(center, &spheres[index]);
         }
     }
     answer.sphere = Sphere::new(center, radius)?;

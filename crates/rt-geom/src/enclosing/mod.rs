@@ -145,7 +145,7 @@ fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Op
     }
     let mut tangent = Tangent::single(far);
     few::pivot(simd, &mut tangent, &lanes, |lane| lane, spheres, origin);
-    let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
+    let (mut bracket, bound) = certify::certify(simd, &tangent, spheres);
     // Who else is close enough to the boundary to stick out?
     let (center, limit) = near(&tangent, &bracket, spheres, origin);
     let mut near = lanes.beyond(simd, center, limit) & (u64::MAX >> (64 - spheres.len()));
@@ -162,7 +162,7 @@ fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Op
         }
         bracket.enclose(simd, four.map(|index| &spheres[index]));
     }
-    if bracket.high > before || !settled || doubtful(&bracket, bound) {
+    if bracket.high > before || doubtful(&bracket, bound) {
         return refined(spheres, &tangent, &bracket, bound);
     }
     finish(spheres, &bracket, bound, tangent.support())
@@ -178,7 +178,7 @@ fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
         origin,
         #[inline(always)]
         |tangent, blocks| {
-            let (mut bracket, bound, settled) = certify::certify(simd, &tangent, spheres);
+            let (mut bracket, bound) = certify::certify(simd, &tangent, spheres);
             let (center, limit) = near(&tangent, &bracket, spheres, origin);
             let before = bracket.high;
             let mut four = [tangent.support()[0]; 4];
@@ -192,7 +192,7 @@ fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
                 }
             });
             bracket.enclose(simd, four.map(|index| &spheres[index]));
-            if bracket.high > before || !settled || doubtful(&bracket, bound) {
+            if bracket.high > before || doubtful(&bracket, bound) {
                 return refined(spheres, &tangent, &bracket, bound);
             }
             finish(spheres, &bracket, bound, tangent.support())
@@ -257,6 +257,7 @@ fn sorted(support: &[usize]) -> ([usize; 4], usize) {
 
 #[cfg(test)]
 mod tests {
+    use super::certify::contains_exactly;
     use super::*;
 
     fn ball(x: f64, y: f64, z: f64, r: f64) -> Sphere {
@@ -352,6 +353,89 @@ mod tests {
         }
         let [doubles, _, refined] = stage::decisions();
         assert!(doubles > 900 && refined > 0, "{doubles} {refined}");
+    }
+
+    /// Numbers in 0..1.
+    fn units() -> impl FnMut() -> f64 {
+        let mut state = 4_u64;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 * (-53.0_f64).exp2()
+        }
+    }
+
+    /// So many spheres of this size: points, equal balls, any balls, or on a grid with reaches that are whole numbers.
+    fn some_at(
+        kind: usize,
+        count: usize,
+        offset: DVec3,
+        size: f64,
+        mut unit: impl FnMut() -> f64,
+    ) -> Vec<Sphere> {
+        (0..count)
+            .map(|_| {
+                let mut both = || 2.0 * unit() - 1.0;
+                let mut center = DVec3::new(both(), both(), both());
+                let mut radius = [0.0, 0.5, both().abs(), 0.0][kind];
+                if kind == 3 {
+                    (center, radius) = ((center * 4.0).round() * 3.0, (both() * 3.0).round().abs());
+                }
+                Sphere::new(offset + center * size, radius * size).unwrap()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn exact_integers_are_asked_a_bounded_number_of_questions() {
+        let mut unit = units();
+        let mut counts = [2, 2, 3, 4, 16].into_iter().cycle();
+        let mut most = 0.0_f64;
+        for offset in (0..=300).step_by(4).filter(|&decade| decade == 0 || decade >= 8) {
+            for scale in (-300..=300).step_by(20) {
+                for kind in 0..4 {
+                    let count = counts.next().unwrap();
+                    let distance = if offset == 0 { 0.0 } else { 10.0_f64.powi(offset) };
+                    // The size is any, or one that shows at this offset.
+                    let near = 10.0_f64.powf(f64::from(offset) - 18.0 * unit());
+                    for size in [10.0_f64.powi(scale), near] {
+                        let offset = distance * DVec3::new(unit(), unit(), unit());
+                        let set = some_at(kind, count, offset, size, &mut unit);
+                        stage::questions();
+                        let answer = enclosing_sphere(&set).unwrap();
+                        let questions = stage::questions();
+                        most = most.max(questions as f64 / count as f64);
+                        // Three a sphere; and three more where a scaled copy is solved first.
+                        assert!(questions <= 6 * count, "{questions} {set:?}");
+                        let (center, radius) = (answer.sphere.center(), answer.sphere.radius());
+                        let holds = |radius| set.iter().all(|s| contains_exactly(center, radius, s));
+                        assert!(holds(radius) && !(radius > 0.0 && holds(radius.next_down())), "{set:?}");
+                        assert!(answer.lower_bound <= radius, "{set:?}");
+                    }
+                }
+            }
+        }
+        assert!(most >= 1.0, "{most}");
+    }
+
+    #[test]
+    fn far_from_the_origin_doubles_decide_nearly_always() {
+        let mut unit = units();
+        stage::decisions();
+        for count in 2..=4 {
+            for decade in [8, 10, 12, 13] {
+                for _ in 0..250 {
+                    let offset = 10.0_f64.powi(decade) * DVec3::new(unit(), unit(), unit());
+                    let set = some_at(2, count, offset, 1.0, &mut unit);
+                    let answer = enclosing_sphere(&set).unwrap();
+                    // Rounding the center costs no more than it must.
+                    let spacing = answer.sphere.center().abs().max_element() * (2.0 * U);
+                    let gap = answer.sphere.radius() - answer.lower_bound;
+                    assert!(gap <= spacing + 1e-15, "{gap:e} {spacing:e} {set:?}");
+                }
+            }
+        }
+        let [doubles, integers, refined] = stage::decisions();
+        assert!(doubles > 2950 && integers < 10 && refined < 60, "{doubles} {integers} {refined}");
     }
 
     #[test]
