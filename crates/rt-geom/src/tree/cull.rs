@@ -13,7 +13,7 @@ use fearless_simd::{Simd, f32x4, f32x16, f64x4, mask32x16, prelude::*, u32x16};
 use glam::{DVec3, Vec3};
 
 use super::node::{Balls, Boxes, Frame, Lanes, WIDTH, down, up};
-use crate::ray::PreparedRay;
+use crate::ray::{PreparedRay, larger};
 
 /// Half the spacing of f32 numbers at 1.
 const U: f32 = 1.0 / (1 << 24) as f32;
@@ -83,7 +83,7 @@ impl Line {
         let base = -dot * (length * inverse);
         let nearest = origin - along * (dot * inverse);
         let unscaled_length = length;
-        let length = length * unit * frame.scale();
+        let length = length * (unit * frame.scale());
         // Written so that NaN goes this way.
         if !(error < MAX_LINE_ERROR && length > f64::MIN_POSITIVE && length < f64::INFINITY) {
             *self = Self::EVERYTHING;
@@ -139,6 +139,8 @@ impl Line {
     /// From now on, only what reaches the parameter `t` or less is of interest.
     #[inline(always)]
     pub(super) fn shorten(&mut self, t: f64) {
+        // Exact parameters that round to minus infinity lie below the least double, and are equal to each other.
+        let t = larger(t, f64::MIN);
         #[expect(clippy::cast_possible_truncation, reason = "the offset makes up for the rounding")]
         let last = (t * self.length + self.last_offset) as f32;
         // NaN, from an infinite t, shortens nothing.
