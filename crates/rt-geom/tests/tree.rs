@@ -405,11 +405,84 @@ fn no_input_overflows_the_stack_or_takes_forever() {
     }
 }
 
+/// Listed once, and then `many` times, with something else before and after.
+fn copies<T: Copy>(one: T, many: usize, other: [T; 2]) -> [Vec<T>; 2] {
+    [1, many].map(|n| [vec![other[0]], vec![one; n], vec![other[1]]].concat())
+}
+
 #[test]
-fn coincident_spheres_give_the_lowest_index() {
-    let tree = SphereTree::new(vec![ball(DVec3::ONE, 1.0); 10_000], vec![]);
-    let ray = Ray::new(DVec3::new(-3.0, 1.0, 1.0), DVec3::X).unwrap();
-    assert_eq!(tree.closest(&ray, AHEAD), Some(Hit { index: 0, t: 3.0 }));
+fn equal_primitives_cost_what_one_does_and_the_lowest_index_answers() {
+    let far = [DVec3::new(0.0, 9.0, 0.0), DVec3::new(0.0, 0.0, 9.0)];
+    let triangle = |at: DVec3| Triangle::new(at - DVec3::Y, at - DVec3::Z, at + DVec3::Y + DVec3::Z).unwrap();
+    // The zeros' signs differ, the sphere does not.
+    let (plus, minus) = (ball(DVec3::new(1.0, 0.0, 0.0), 1.0), ball(DVec3::new(1.0, -0.0, -0.0), 1.0));
+    for many in [2, 16, 17, 40, 128, 129, 10_000] {
+        let [one, mut spheres] = copies(plus, many, far.map(|at| ball(at, 0.5)));
+        spheres[2] = minus;
+        let [one_triangle, triangles] = copies(triangle(DVec3::ZERO), many, far.map(triangle));
+        let scenes = [
+            // Nothing else.
+            (vec![plus; many], vec![], vec![plus], vec![]),
+            (vec![], vec![triangle(DVec3::ZERO); many], vec![], vec![triangle(DVec3::ZERO)]),
+            (spheres.clone(), vec![], one.clone(), vec![]),
+            (spheres, triangles, one, one_triangle),
+        ];
+        for (spheres, triangles, one, one_triangle) in scenes {
+            let tree = SphereTree::new(spheres.clone(), triangles.clone());
+            let halving = HalvingTree::new(spheres.clone(), triangles.clone());
+            let alone = SphereTree::new(one.clone(), one_triangle.clone());
+            let halving_alone = HalvingTree::new(one, one_triangle);
+            for (i, &sphere) in spheres.iter().enumerate() {
+                assert_eq!(tree.shape(i), Shape::Sphere(sphere));
+            }
+            for origin in
+                [DVec3::new(-3.0, 0.0, 0.0), DVec3::new(-3.0, 0.125, 0.25), DVec3::new(-3.0, 5.0, 5.0)]
+            {
+                let ray = Ray::new(origin, DVec3::X).unwrap();
+                let scene = Scene {
+                    name: "",
+                    spheres: spheres.clone(),
+                    triangles: triangles.clone(),
+                    center: origin,
+                    size: 1.0,
+                };
+                let expected = bits(closest_by_loop(&scene, &ray, &AHEAD));
+                let ((hit, visits), (_, least)) =
+                    (tree.closest_counted(&ray, AHEAD), alone.closest_counted(&ray, AHEAD));
+                assert_eq!(bits(hit), expected, "{many} copies, {ray:?}");
+                // Beside other primitives, two leaf blocks of each kind may be filled up with copies.
+                let (work, limit) = (visits.nodes + visits.leaves, 2 * (least.nodes + least.leaves) + 4);
+                assert!(
+                    work <= limit && visits.tests <= least.tests + 64,
+                    "{many}: {visits:?} for {least:?}"
+                );
+                if spheres.len().max(triangles.len()) == many {
+                    assert_eq!(visits, least, "{many} copies and nothing else");
+                }
+                let (hit, tests) = halving.closest_counted(&ray, AHEAD);
+                assert_eq!(bits(hit), expected, "halving, {many} copies, {ray:?}");
+                let least = halving_alone.closest_counted(&ray, AHEAD).1;
+                assert!(tests <= least + 128, "halving, {many}: {tests} for {least}");
+                let mut batch = [None; 3];
+                tree.closest_batch(&[ray; 3], AHEAD, &mut batch);
+                assert_eq!(batch.map(bits), [expected; 3], "batch, {many} copies, {ray:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn copies_of_spheres_with_one_center_are_left_out_too() {
+    let random = &mut Random(13);
+    let shells: Vec<Sphere> = (0..40_000).map(|i| ball(DVec3::ONE, 1.0 + f64::from(i % 37) / 64.0)).collect();
+    let scene = Scene { name: "shells", spheres: shells, triangles: vec![], center: DVec3::ONE, size: 1.0 };
+    let tree = SphereTree::new(scene.spheres.clone(), vec![]);
+    for _ in 0..100 {
+        let ray = Ray::new(DVec3::new(1.0, 1.0, -5.0), DVec3::Z + 0.5 * random.cube()).unwrap();
+        let (hit, visits) = tree.closest_counted(&ray, AHEAD);
+        assert_eq!(bits(hit), bits(closest_by_loop(&scene, &ray, &AHEAD)), "{ray:?}");
+        assert!(visits.tests <= 37, "{visits:?}");
+    }
 }
 
 #[test]

@@ -6,23 +6,28 @@
 //!    lie at multiples of sixteen, so every leaf block but the last is full, and leaf block `k` holds exactly the
 //!    primitives `16 k ..` of the leaf order: no index is stored for it. Long ranges are cut between bins, short ones
 //!    after sorting.
-//! 3. A node takes in the largest of its children until it has sixteen.
-//! 4. Every child gets its minimal ball.
+//! 3. Where no cut can part the centers, of equal primitives only the one of the lowest index is kept: the others, its
+//!    *twins*, come last in the range, and no node or leaf block has a bound for them.
+//! 4. A node takes in the largest of its children until it has sixteen.
+//! 5. Every child gets its minimal ball.
 //!
 //! The two sides of a cut are built in parallel. Where things lie depends on the counts alone, never on the order in
 //! which threads finish, so the tree is the same for any number of threads.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*, u32x8};
 use glam::Vec4;
+use rayon::prelude::*;
 
-use super::node::{Child, Kind, Node, WIDTH};
+use super::node::{COORDINATE_ERROR, Child, Kind, Node, WIDTH};
 use super::rank::{self, ascending};
 use crate::Sphere;
 use crate::enclosing::nodes::{self, enclosing_nodes};
 
-/// A primitive's box. `low.w` carries the primitive's index as bits; no arithmetic uses that lane's value.
+/// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` whether it is a twin; no arithmetic uses that
+/// lane's value.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     low: Vec4,
@@ -40,6 +45,11 @@ impl Item {
 
     pub(super) fn index(&self) -> u32 {
         self.low.w.to_bits()
+    }
+
+    /// Whether a primitive of lower index, in the same part of the tree, is equal to this one.
+    pub(super) fn is_twin(&self) -> bool {
+        self.high.w > 0.0
     }
 
     pub(super) fn low(&self) -> [f32; 3] {
@@ -93,7 +103,7 @@ impl Bounds {
 pub(super) struct Branch {
     pub(super) low: [f32; 3],
     pub(super) high: [f32; 3],
-    /// Leaf blocks of the first side; 0 for a leaf block.
+    /// Leaf blocks of the first side, with those of its twins; 0 for a leaf block.
     pub(super) first: u32,
 }
 
@@ -114,16 +124,23 @@ const BINS: usize = 32;
 /// The binary tree is never deeper: where the best cuts would lead there, the range is halved.
 pub(super) const MAX_DEPTH: u32 = 64;
 
+/// The spread of doubled centers up to which no cut parts them: boxes are wider by that alone.
+#[expect(clippy::cast_possible_truncation, reason = "a power of two")]
+const COINCIDENT: f32 = 2.0 * COORDINATE_ERROR as f32;
+
 /// Sorts the items into leaf order and returns the binary tree over them.
-pub(super) fn binary_tree(items: &mut [Item]) -> Vec<Branch> {
+pub(super) fn binary_tree(items: &mut [Item], order: Order) -> Vec<Branch> {
     let leaves = items.len().div_ceil(WIDTH);
     let mut branches = vec![Branch::NONE; (2 * leaves).saturating_sub(1)];
     if leaves > 0 {
         let bounds = bounds_of(items);
-        grow(items, &mut branches, &bounds, 0);
+        grow(items, &mut branches, &bounds, 0, false, order);
     }
     branches
 }
+
+/// How the primitives with two indices compare: as equal only if every ray gets the same answer from both.
+pub(super) type Order<'a> = &'a (dyn Fn(u32, u32) -> Ordering + Sync);
 
 /// Bounds of the items and of their middles.
 #[derive(Clone, Copy)]
@@ -142,13 +159,25 @@ fn bounds_of(items: &[Item]) -> Extent {
     extent
 }
 
-fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32) {
-    let leaves = items.len().div_ceil(WIDTH);
+/// `distinct` tells that no two items are known to be equal.
+fn grow(
+    items: &mut [Item],
+    branches: &mut [Branch],
+    extent: &Extent,
+    depth: u32,
+    distinct: bool,
+    order: Order,
+) {
     branches[0] = Branch {
         low: extent.items.low.truncate().to_array(),
         high: extent.items.high.truncate().to_array(),
         first: 0,
     };
+    let spread = extent.middles.high - extent.middles.low;
+    let coincide = items.len() > 1 && spread.truncate().max_element() <= COINCIDENT;
+    let kept = if coincide && !distinct { part_twins(items, order) } else { items.len() };
+    let (items, distinct) = (&mut items[..kept], coincide);
+    let leaves = items.len().div_ceil(WIDTH);
     if leaves == 1 {
         return;
     }
@@ -158,7 +187,7 @@ fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32
     let (left_branches, right_branches) = branches[1..].split_at_mut(2 * (first / WIDTH) - 1);
     let side = |items: &mut [Item], branches: &mut [Branch]| {
         let extent = bounds_of(items);
-        grow(items, branches, &extent, depth + 1);
+        grow(items, branches, &extent, depth + 1, distinct, order);
     };
     if leaves * WIDTH > PARALLEL {
         rayon::join(|| side(left, left_branches), || side(right, right_branches));
@@ -166,6 +195,22 @@ fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32
         side(left, left_branches);
         side(right, right_branches);
     }
+}
+
+/// Of equal primitives marks all as twins but the one of the lowest index, puts them last, and returns how many are left.
+#[cold]
+fn part_twins(items: &mut [Item], order: Order) -> usize {
+    let compare = |a: &Item, b: &Item| order(a.index(), b.index());
+    items.par_sort_unstable_by(|a, b| compare(a, b).then(a.index().cmp(&b.index())));
+    let mut twins = 0;
+    for i in 1..items.len() {
+        if compare(&items[i - 1], &items[i]).is_eq() {
+            items[i].high.w = 1.0;
+            twins += 1;
+        }
+    }
+    partition(items, |item| !item.is_twin());
+    items.len() - twins
 }
 
 /// Reorders the items and returns how many belong to the first side: a multiple of [`WIDTH`], and neither side empty.
@@ -405,7 +450,7 @@ fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) {
 }
 
 /// Puts the `many` greatest items last.
-fn move_to_border(items: &mut [Item], many: usize, order: impl Fn(&Item, &Item) -> std::cmp::Ordering) {
+fn move_to_border(items: &mut [Item], many: usize, order: impl Fn(&Item, &Item) -> Ordering) {
     let at = items.len() - many;
     items.select_nth_unstable_by(at, order);
 }
@@ -469,10 +514,10 @@ struct Collapse<'a> {
 }
 
 impl Collapse<'_> {
-    /// The part below the branch `at`, which holds the leaf blocks `leaves`. The recursion is no deeper than the
+    /// The part below the branch `at`, which holds the leaf blocks `leaves`, those of twins included. The recursion is no deeper than the
     /// binary tree, so [`MAX_DEPTH`] bounds it.
     fn part(&mut self, at: usize, leaves: Range<usize>) -> Part {
-        if leaves.len() == 1 {
+        if self.branches[at].first == 0 {
             return Part { child: Child::new(self.kind, leaves.start), stack: 0 };
         }
         let mut parts = Vec::with_capacity(WIDTH);

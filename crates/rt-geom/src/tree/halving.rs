@@ -43,6 +43,8 @@ struct Node {
     sphere: Option<Sphere>,
     /// Where the nodes of the second half begin.
     second: usize,
+    /// Whether all primitives below are equal. The first then answers for all, and no nodes are kept below.
+    equal: bool,
 }
 
 impl HalvingTree {
@@ -51,8 +53,33 @@ impl HalvingTree {
         let mut bounds: Vec<Option<Sphere>> = spheres.iter().copied().map(Some).collect();
         bounds.extend(triangles.iter().map(minimal_sphere));
         let mut nodes = Vec::with_capacity(bounds.len());
-        build(&bounds, &mut nodes);
-        Self { spheres, triangles, nodes }
+        let mut tree = Self { spheres, triangles, nodes: Vec::new() };
+        tree.build(&bounds, 0, &mut nodes);
+        tree.nodes = nodes;
+        tree
+    }
+
+    /// Appends the nodes over `bounds`, those of the primitives from `first` on, and returns whether these are all equal.
+    /// The depth is `log2(n)`, so recursion is safe.
+    fn build(&self, bounds: &[Option<Sphere>], first: usize, nodes: &mut Vec<Node>) -> bool {
+        if bounds.len() < 2 {
+            return true;
+        }
+        let all: Option<Vec<Sphere>> = bounds.iter().copied().collect();
+        let sphere = all.and_then(|spheres| enclosing_sphere(&spheres)).map(|enclosing| enclosing.sphere);
+        let at = nodes.len();
+        nodes.push(Node { sphere, second: 0, equal: false });
+        let middle = bounds.len() / 2;
+        let (first_half, second_half) = bounds.split_at(middle);
+        let first_equal = self.build(first_half, first, nodes);
+        nodes[at].second = nodes.len();
+        let second_equal = self.build(second_half, first + middle, nodes);
+        let equal = first_equal && second_equal && self.shape(first) == self.shape(first + middle);
+        if equal {
+            nodes.truncate(at + 1);
+            nodes[at].equal = true;
+        }
+        equal
     }
 
     /// How many primitives the tree holds.
@@ -104,9 +131,9 @@ impl HalvingTree {
         // What is still to do: primitives `first..end`, and where their node is if there are several.
         let mut stack = vec![(0, self.len(), 0)];
         while let Some((first, end, node)) = stack.pop() {
-            if end - first > 1 {
+            if end - first > 1 && !self.nodes[node].equal {
                 // (In place: reading in pairs what was just copied in pieces would wait for the memory.)
-                let Node { sphere, second } = &self.nodes[node];
+                let Node { sphere, second, .. } = &self.nodes[node];
                 if let Some(sphere) = sphere {
                     tests += 1;
                     let last = best.map_or(within.end, |hit| hit.t);
@@ -144,21 +171,6 @@ fn meets_ball(ball: &Sphere, ray: &Ray, start: f64, last: f64) -> bool {
         Roots::All => return true,
     };
     enter.total_cmp(&last).is_le() && leave.total_cmp(&start).is_ge()
-}
-
-/// Appends the nodes over `bounds`; the depth is `log2(n)`, so recursion is safe.
-fn build(bounds: &[Option<Sphere>], nodes: &mut Vec<Node>) {
-    if bounds.len() < 2 {
-        return;
-    }
-    let all: Option<Vec<Sphere>> = bounds.iter().copied().collect();
-    let sphere = all.and_then(|spheres| enclosing_sphere(&spheres)).map(|enclosing| enclosing.sphere);
-    let at = nodes.len();
-    nodes.push(Node { sphere, second: 0 });
-    let (first, second) = bounds.split_at(bounds.len() / 2);
-    build(first, nodes);
-    nodes[at].second = nodes.len();
-    build(second, nodes);
 }
 
 #[cfg(test)]

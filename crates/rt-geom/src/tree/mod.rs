@@ -41,6 +41,13 @@ pub enum Shape {
 }
 
 /// The tree to cast rays with: answers equal the plain loop's, bit for bit.
+///
+/// A query usually takes time in the order of the logarithm of the number of primitives. It takes time in proportion to
+/// their number where bounds cannot part them: where many distinct primitives share a point that the ray passes, as a
+/// fan of triangles does or spheres with one center, or lie closer together than the rounding of the bounds, which is
+/// about 2^-21 of the scene's radius. Equal primitives cost no more than one of them: the lowest index answers.
+/// So do rays that start beyond 2^42 radii from the scene, or whose direction is so long or so short that one
+/// unit of `t` in radii of the scene is not a normal double: they meet every primitive.
 #[derive(Clone, Debug)]
 pub struct SphereTree {
     /// In leaf order, as are the triangles.
@@ -85,19 +92,35 @@ impl SphereTree {
         let mut parts: Vec<(Part, Branch)> = Vec::new();
         let mut first_triangle_node = 0;
         let mut index = Vec::with_capacity(count);
-        let mut plant = |mut items: Vec<Item>, kind: Kind| {
-            let branches = build::binary_tree(&mut items);
+        let mut plant = |items: Vec<Item>, branches: &[Branch], kind: Kind| {
             index.extend(items.iter().map(Item::index));
+            let twins = items.iter().enumerate().filter(|(_, item)| item.is_twin()).map(|(place, _)| place);
+            let twins: Vec<usize> = twins.collect();
             drop(items);
             if let Some(&whole) = branches.first() {
                 if kind == Kind::Triangles {
                     first_triangle_node = nodes.len();
                 }
-                parts.push((build::collapse(&branches, kind, &mut nodes, &mut spans), whole));
+                parts.push((build::collapse(branches, kind, &mut nodes, &mut spans), whole));
             }
+            twins
         };
-        plant(spheres.par_iter().enumerate().map(sphere_items).collect(), Kind::Spheres);
-        plant(triangles.par_iter().enumerate().map(triangle_items).collect(), Kind::Triangles);
+        let mut items: Vec<Item> = spheres.par_iter().enumerate().map(sphere_items).collect();
+        let branches = build::binary_tree(&mut items, &|a, b| {
+            let numbers = |i: u32| {
+                let sphere = &spheres[i as usize];
+                (sphere.center().to_array(), sphere.radius())
+            };
+            numbers(a).partial_cmp(&numbers(b)).expect("finite numbers")
+        });
+        let sphere_twins = plant(items, &branches, Kind::Spheres);
+        let mut items: Vec<Item> = triangles.par_iter().enumerate().map(triangle_items).collect();
+        let branches = build::binary_tree(&mut items, &|a, b| {
+            let numbers = |i: u32| triangles[i as usize - spheres.len()].vertices().map(|v| v.to_array());
+            numbers(a).partial_cmp(&numbers(b)).expect("finite numbers")
+        });
+        let triangle_twins = plant(items, &branches, Kind::Triangles);
+        drop(branches);
 
         let mut place = vec![0; count];
         for (at, &index) in index.iter().enumerate() {
@@ -118,7 +141,10 @@ impl SphereTree {
             }
             block
         });
-        let sphere_blocks = sphere_blocks.collect();
+        let mut sphere_blocks: Vec<Balls> = sphere_blocks.collect();
+        for place in sphere_twins {
+            sphere_blocks[place / WIDTH].clear(place % WIDTH);
+        }
         let triangle_blocks = triangles.par_chunks(WIDTH).map(|chunk| {
             let mut block = Boxes::EMPTY;
             for (lane, triangle) in chunk.iter().enumerate() {
@@ -128,7 +154,10 @@ impl SphereTree {
             }
             block
         });
-        let triangle_blocks = triangle_blocks.collect();
+        let mut triangle_blocks: Vec<Boxes> = triangle_blocks.collect();
+        for place in triangle_twins {
+            triangle_blocks[place / WIDTH].clear(place % WIDTH);
+        }
         let first_triangle_node = if triangles.is_empty() { nodes.len() } else { first_triangle_node };
         let below = &spans[..first_triangle_node];
         let mut minimal = build::minimal_spheres(&nodes, 0, below, &spheres, WIDTH);

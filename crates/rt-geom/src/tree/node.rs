@@ -41,6 +41,11 @@ impl Balls {
         }
         self.radius.0[lane] = ball.radius;
     }
+
+    /// Makes the lane an unused one.
+    pub(super) fn clear(&mut self, lane: usize) {
+        self.set(lane, Ball { center: [f32::NAN; 3], radius: 0.0 });
+    }
 }
 
 /// Up to sixteen boxes: the three lower planes, then the three upper ones. An unused lane is inside out.
@@ -59,6 +64,11 @@ impl Boxes {
             self.0[axis].0[lane] = low[axis];
             self.0[axis + 3].0[lane] = high[axis];
         }
+    }
+
+    /// Makes the lane an unused one.
+    pub(super) fn clear(&mut self, lane: usize) {
+        self.set(lane, [f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     }
 }
 
