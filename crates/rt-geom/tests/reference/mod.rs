@@ -173,9 +173,9 @@ pub(crate) fn holds(within: &Range<f64>, t: f64) -> bool {
     !empty && from && to
 }
 
-/// The number of random cases per class: ten thousand, or a million with the environment variable `RT_LONG` set.
+/// The number of random cases per class: ten thousand, or half a million with the environment variable `RT_LONG` set.
 pub(crate) fn cases() -> usize {
-    if std::env::var_os("RT_LONG").is_some() { 1_000_000 } else { 10_000 }
+    if std::env::var_os("RT_LONG").is_some() { 500_000 } else { 10_000 }
 }
 
 /// Splitmix64: small, seeded, the same everywhere.
