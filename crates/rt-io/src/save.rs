@@ -5,8 +5,16 @@
 //! process dies, the lock goes with it; the next save of the same target finds the temporary unlocked and removes it.
 //! The lock, unlike a process number in the name, also tells the living from the dead between machines that share a
 //! folder. On a file system without locks nobody can tell, and what a dead process left stays.
+//!
+//! A temporary that will replace a file can be read by its writer alone until its bytes are there; then it gets the old
+//! file's owner and group, and last its mode, because a change of owner clears the bits that run a program as somebody
+//! else. A process without the right to give a file away keeps the group if it is a member of it. What the mode would
+//! then grant to the wrong ones is taken out: to run as the new owner or group, and to the new group whatever was not
+//! granted to everybody.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+#[cfg(unix)]
+use std::fs::Permissions;
+use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{self, Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -49,9 +57,17 @@ pub enum SaveError {
 
 /// Writes the file at `path` by `write`, whole or not at all.
 ///
-/// Until the last moment an existing file stays untouched, and it keeps its permissions; a new one gets those of any
-/// newly created file. A symbolic link is followed, and its target replaced. What is not a regular file (a pipe,
-/// `/dev/stdout`, `/dev/full`) is written directly.
+/// Until the last moment an existing file stays untouched. The new one keeps its mode, and its owner and group where the
+/// process may give files away; where it may not, the mode never grants more than it did (see below). A file that was not
+/// there gets the mode of any newly created file. A symbolic link is followed, and its target replaced. What is not a
+/// regular file (a pipe, `/dev/stdout`, `/dev/full`) is written directly.
+///
+/// It is another file that takes the name: hard links to the old one keep the old bytes, and access lists, extended
+/// attributes and the time of creation are lost. Where a file had an access list, the bits of its mode for the group are
+/// the most that the list granted to anybody, and the group then has them.
+///
+/// Where the owner cannot be kept, no program is left that runs as its owner; where the group cannot be, none that runs as
+/// its group, and the new group may do only what everybody may.
 ///
 /// A process killed inside leaves a temporary file, which the next save of the same path removes. `write` gets a buffered
 /// writer, and need not flush it.
@@ -81,7 +97,7 @@ pub fn save_atomically(
         return Err(SaveError::Folder { path: path.to_path_buf() });
     }
 
-    let (target, permissions) = match resolve(path).map_err(open_error)? {
+    let (target, old) = match resolve(path).map_err(open_error)? {
         Target::Folder => return Err(SaveError::Folder { path: path.to_path_buf() }),
         Target::Device(device) => {
             // Appending, so that `>> file` behind /dev/stdout keeps what it holds; a pipe has no end to mind.
@@ -92,8 +108,7 @@ pub fn save_atomically(
         Target::File(target) => {
             // A rename would ask the folder alone; a file that may not be written is not replaced either.
             let file = OpenOptions::new().write(true).open(&target).map_err(open_error)?;
-            let permissions = file.metadata().map_err(open_error)?.permissions();
-            (target, Some(permissions))
+            (target, Some(file.metadata().map_err(open_error)?))
         }
     };
 
@@ -103,7 +118,7 @@ pub fn save_atomically(
     };
     let name = temporary_name(&target);
     remove_stale(folder, &name);
-    let mut temporary = Temporary::create(folder, &name).map_err(|source| {
+    let mut temporary = Temporary::create(folder, &name, old.is_some()).map_err(|source| {
         if source.kind() == io::ErrorKind::NotFound && !folder.is_dir() {
             SaveError::MissingFolder { path: path.to_path_buf(), folder: folder.to_path_buf() }
         } else {
@@ -111,10 +126,8 @@ pub fn save_atomically(
         }
     })?;
     write_all(&mut temporary.file, write).map_err(write_error)?;
-    if let Some(permissions) = permissions
-        && temporary.file.metadata().map_err(write_error)?.permissions() != permissions
-    {
-        temporary.file.set_permissions(permissions).map_err(write_error)?;
+    if let Some(old) = old {
+        keep_access(&temporary.file, &old).map_err(write_error)?;
     }
     temporary.file.sync_all().map_err(write_error)?;
     fs::rename(&temporary.path, &target).map_err(write_error)?;
@@ -132,6 +145,50 @@ fn write_all(file: &mut File, write: impl FnOnce(&mut dyn Write) -> io::Result<(
             Err(error)
         }
     }
+}
+
+/// Gives a file that replaces another its owner, group and mode, as far as that is allowed.
+#[cfg(unix)]
+fn keep_access(file: &File, old: &Metadata) -> io::Result<()> {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+
+    let new = file.metadata()?;
+    if (new.uid(), new.gid()) != (old.uid(), old.gid())
+        && fchown(file, Some(old.uid()), Some(old.gid())).is_err()
+        && new.gid() != old.gid()
+    {
+        // Whether it could is seen below.
+        let _ = fchown(file, None, Some(old.gid()));
+    }
+    let new = file.metadata()?;
+    let mode = safe_mode(old.mode() & 0o7777, new.uid() == old.uid(), new.gid() == old.gid());
+    if new.mode() & 0o7777 != mode {
+        file.set_permissions(Permissions::from_mode(mode))?;
+    }
+    Ok(())
+}
+
+/// The mode without what it would grant to the wrong ones, if the owner or the group is another.
+#[cfg(unix)]
+fn safe_mode(mode: u32, owner_kept: bool, group_kept: bool) -> u32 {
+    let mut mode = mode;
+    if !owner_kept {
+        mode &= !0o4000;
+    }
+    if !group_kept {
+        let everybody = mode & 0o007;
+        mode &= !0o2070 | everybody << 3;
+    }
+    mode
+}
+
+/// Gives a file that replaces another its permissions.
+#[cfg(not(unix))]
+fn keep_access(file: &File, old: &Metadata) -> io::Result<()> {
+    if file.metadata()?.permissions() != old.permissions() {
+        file.set_permissions(old.permissions())?;
+    }
+    Ok(())
 }
 
 /// What stands at the end of a path's links.
@@ -216,11 +273,20 @@ struct Temporary {
 }
 
 impl Temporary {
-    fn create(folder: &Path, name: &str) -> io::Result<Self> {
+    /// Creates a file with the mode of any new one, or for its owner alone.
+    fn create(folder: &Path, name: &str, private: bool) -> io::Result<Self> {
         static NEXT: AtomicU32 = AtomicU32::new(0);
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        if private {
+            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        }
+        #[cfg(not(unix))]
+        let _ = private;
         loop {
             let path = folder.join(format!("{name}{}.tmp", id(NEXT.fetch_add(1, Ordering::Relaxed))));
-            let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+            let file = match options.open(&path) {
                 Ok(file) => file,
                 // Another machine's process of the same number, or a stale one that could not be removed.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
@@ -258,6 +324,19 @@ impl Drop for Temporary {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    #[cfg(unix)]
+    fn a_mode_grants_no_more_to_another_owner_or_group() {
+        for mode in 0..=0o7777 {
+            assert_eq!(safe_mode(mode, true, true), mode);
+            assert_eq!(safe_mode(mode, false, true), mode & 0o3777, "{mode:o}");
+            let other_group = safe_mode(mode, true, false);
+            assert_eq!(other_group & 0o5707, mode & 0o5707, "{mode:o}: what is not the group's stays");
+            assert_eq!(other_group & 0o2000, 0, "{mode:o}");
+            assert_eq!(other_group >> 3 & 7, (mode >> 3) & mode & 7, "{mode:o}");
+        }
+    }
 
     #[test]
     fn a_temporary_that_a_clean_up_found_first_is_given_up() {
