@@ -22,5 +22,5 @@ mod save;
 
 pub use decode::{DecodeError, Decoded, ReadImageError, decode_image, read_image};
 pub use limits::Limits;
-pub use pixmap::Pixmap;
+pub use pixmap::{Pixmap, Samples};
 pub use save::{SaveError, save_atomically};

@@ -1,7 +1,9 @@
 //! A picture in memory: RGB samples exactly as a file holds them, with the `maxval` that means full intensity.
 //!
-//! Samples stay raw. A picture whose `maxval` fits in a byte keeps one byte a sample, any other two; nobody outside
-//! this crate sees the difference.
+//! Samples stay raw. A picture whose `maxval` fits in a byte keeps one byte a sample, any other two; a grey file's keeps one
+//! sample a pixel, any other three. [`Pixmap::into_stored`] alone shows the difference.
+
+use std::collections::TryReserveError;
 
 /// An RGB picture: `3 * width * height` samples, row 0 at the top, each in `0..=maxval`.
 ///
@@ -13,25 +15,47 @@
 /// assert_eq!(pixmap.pixel(1, 0), [0, 0, 128]);
 /// assert_eq!(Pixmap::new(2, 1, 100, vec![255, 0, 0, 0, 0, 128]), None);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Pixmap {
     width: usize,
     height: usize,
     maxval: u16,
+    /// Samples of a pixel that are stored: 1 where all three are equal in the file, else 3.
+    channels: usize,
     samples: Samples,
 }
 
-/// `Eight` exactly when `maxval <= 255`, so that equal pictures compare equal.
+/// Samples in the width that a picture keeps them in: `Eight` exactly when `maxval <= 255`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Samples {
+pub enum Samples {
+    /// One byte each.
     Eight(Vec<u8>),
+    /// Two bytes each.
     Sixteen(Vec<u16>),
 }
+
+/// Pictures are equal if their pixels and their `maxval` are, however they are stored.
+impl PartialEq for Pixmap {
+    fn eq(&self, other: &Self) -> bool {
+        let size = |pixmap: &Self| (pixmap.width, pixmap.height, pixmap.maxval);
+        if size(self) != size(other) {
+            return false;
+        }
+        if self.channels == other.channels {
+            return self.samples == other.samples;
+        }
+        let mut places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        places.all(|(x, y)| self.pixel(x, y) == other.pixel(x, y))
+    }
+}
+
+impl Eq for Pixmap {}
 
 impl Pixmap {
     /// A picture of the interleaved RGB `samples`, or `None` if they break the invariant.
     pub fn new(width: usize, height: usize, maxval: u16, samples: Vec<u16>) -> Option<Self> {
-        if maxval == 0 || samples.iter().any(|&sample| sample > maxval) {
+        let length = width.checked_mul(height)?.checked_mul(3)?;
+        if maxval == 0 || samples.len() != length || samples.iter().any(|&sample| sample > maxval) {
             return None;
         }
         let samples = match u8::try_from(maxval) {
@@ -41,15 +65,18 @@ impl Pixmap {
         Self::from_checked(width, height, maxval, samples)
     }
 
-    /// A picture of samples that are known to be at most `maxval` and to have its width; checks the size alone.
+    /// A picture of samples that are known to be at most `maxval` and to have its width; checks the size alone, which tells
+    /// grey from RGB.
     pub(crate) fn from_checked(width: usize, height: usize, maxval: u16, samples: Samples) -> Option<Self> {
-        let expected = width.checked_mul(height)?.checked_mul(3)?;
+        let pixels = width.checked_mul(height)?;
         let found = match &samples {
             Samples::Eight(samples) => samples.len(),
             Samples::Sixteen(samples) => samples.len(),
         };
         debug_assert_eq!(maxval <= 255, matches!(samples, Samples::Eight(_)));
-        (expected > 0 && found == expected).then_some(Self { width, height, maxval, samples })
+        let channels = if found == pixels { 1 } else { 3 };
+        let valid = pixels > 0 && Some(found) == pixels.checked_mul(channels);
+        valid.then_some(Self { width, height, maxval, channels, samples })
     }
 
     /// Number of columns, at least 1.
@@ -78,27 +105,39 @@ impl Pixmap {
             self.width,
             self.height
         );
-        let start = 3 * (y * self.width + x);
+        let start = self.channels * (y * self.width + x);
+        let places = [0, 1, 2].map(|channel: usize| start + channel.min(self.channels - 1));
         match &self.samples {
-            Samples::Eight(samples) => [0, 1, 2].map(|channel| u16::from(samples[start + channel])),
-            Samples::Sixteen(samples) => [0, 1, 2].map(|channel| samples[start + channel]),
+            Samples::Eight(samples) => places.map(|place| u16::from(samples[place])),
+            Samples::Sixteen(samples) => places.map(|place| samples[place]),
         }
     }
 
     /// All samples, interleaved red, green, blue, row by row from the top.
     pub fn to_samples(&self) -> Vec<u16> {
+        let repeated = 3 / self.channels;
         match &self.samples {
-            Samples::Eight(samples) => samples.iter().map(|&sample| u16::from(sample)).collect(),
-            Samples::Sixteen(samples) => samples.clone(),
+            Samples::Eight(samples) => {
+                samples.iter().flat_map(|&sample| std::iter::repeat_n(u16::from(sample), repeated)).collect()
+            }
+            Samples::Sixteen(samples) => {
+                samples.iter().flat_map(|&sample| std::iter::repeat_n(sample, repeated)).collect()
+            }
         }
     }
 
-    /// All samples as [`to_samples`](Self::to_samples) gives them, without a copy where they are 16 bits wide already.
+    /// All samples as [`to_samples`](Self::to_samples) gives them, without a copy where they are stored so already.
     pub fn into_samples(self) -> Vec<u16> {
         match self.samples {
-            Samples::Sixteen(samples) => samples,
-            Samples::Eight(_) => self.to_samples(),
+            Samples::Sixteen(samples) if self.channels == 3 => samples,
+            _ => self.to_samples(),
         }
+    }
+
+    /// The samples as they are stored, which takes no memory: RGB interleaved, row by row from the top, or one a pixel where
+    /// the picture came from a grey file.
+    pub fn into_stored(self) -> Samples {
+        self.samples
     }
 
     /// The same picture with another `maxval`; each sample `v` becomes the nearest to `v * to / from`.
@@ -106,7 +145,7 @@ impl Pixmap {
     /// The rounding is exact, `(v * to + from / 2) / from` in integers, which is also the rule of netpbm's `pamdepth`.
     ///
     /// # Panics
-    /// If `maxval == 0`.
+    /// If `maxval == 0`, and if there is not enough memory, which [`try_scaled`](Self::try_scaled) says instead.
     ///
     /// ```
     /// use rt_io::Pixmap;
@@ -115,10 +154,18 @@ impl Pixmap {
     /// ```
     #[must_use]
     pub fn scaled(&self, maxval: u16) -> Self {
+        self.try_scaled(maxval).expect("there is memory for the samples")
+    }
+
+    /// The same picture with another `maxval`, as [`scaled`](Self::scaled) has it.
+    ///
+    /// # Errors
+    /// If the operating system has not enough memory.
+    ///
+    /// # Panics
+    /// If `maxval == 0`.
+    pub fn try_scaled(&self, maxval: u16) -> Result<Self, TryReserveError> {
         assert!(maxval >= 1, "maxval must be at least 1");
-        if maxval == self.maxval {
-            return self.clone();
-        }
         let (from, to) = (u32::from(self.maxval), u32::from(maxval));
         // One division per value and not per sample. 65535² + 65535/2 still fits in 32 bits.
         let table: Vec<u16> = (0..=from)
@@ -128,19 +175,29 @@ impl Pixmap {
             .collect();
         let look_up = |sample: u16| table[usize::from(sample)];
         let samples = match (&self.samples, maxval <= 255) {
-            (Samples::Eight(s), true) => {
-                Samples::Eight(s.iter().map(|&v| low_byte(look_up(v.into()))).collect())
-            }
-            (Samples::Eight(s), false) => Samples::Sixteen(s.iter().map(|&v| look_up(v.into())).collect()),
-            (Samples::Sixteen(s), true) => Samples::Eight(s.iter().map(|&v| low_byte(look_up(v))).collect()),
-            (Samples::Sixteen(s), false) => Samples::Sixteen(s.iter().map(|&v| look_up(v)).collect()),
+            (Samples::Eight(s), true) => Samples::Eight(try_map(s, |v| low_byte(look_up(v.into())))?),
+            (Samples::Eight(s), false) => Samples::Sixteen(try_map(s, |v| look_up(v.into()))?),
+            (Samples::Sixteen(s), true) => Samples::Eight(try_map(s, |v| low_byte(look_up(v)))?),
+            (Samples::Sixteen(s), false) => Samples::Sixteen(try_map(s, look_up)?),
         };
-        Self { maxval, samples, ..*self }
+        Ok(Self { maxval, samples, ..*self })
+    }
+
+    /// Whether each pixel is stored as one sample.
+    pub(crate) fn is_grey(&self) -> bool {
+        self.channels == 1
     }
 
     pub(crate) fn raw(&self) -> &Samples {
         &self.samples
     }
+}
+
+fn try_map<A: Copy, B>(samples: &[A], map: impl Fn(A) -> B) -> Result<Vec<B>, TryReserveError> {
+    let mut result = Vec::new();
+    result.try_reserve_exact(samples.len())?;
+    result.extend(samples.iter().map(|&sample| map(sample)));
+    Ok(result)
 }
 
 /// The sample as a byte; the caller has seen that it is at most 255.
@@ -176,6 +233,25 @@ mod tests {
             assert_eq!(pixmap.pixel(0, 1), [maxval, 0, 1]);
             assert_eq!(pixmap.into_samples(), samples);
         }
+    }
+
+    #[test]
+    fn a_grey_picture_is_stored_once_and_equals_its_rgb() {
+        for (maxval, samples) in [(255, Samples::Eight(vec![0, 7])), (65535, Samples::Sixteen(vec![0, 7]))] {
+            let grey = Pixmap::from_checked(2, 1, maxval, samples.clone()).unwrap();
+            assert!(grey.is_grey());
+            assert_eq!(grey.pixel(1, 0), [7; 3]);
+            assert_eq!(grey.to_samples(), [0, 0, 0, 7, 7, 7]);
+            assert_eq!(grey.clone().into_samples(), [0, 0, 0, 7, 7, 7]);
+            let colored = Pixmap::new(2, 1, maxval, vec![0, 0, 0, 7, 7, 7]).unwrap();
+            assert!(!colored.is_grey());
+            assert_eq!(grey, colored);
+            assert_eq!(colored.scaled(maxval), grey.scaled(maxval));
+            assert_ne!(grey, Pixmap::new(2, 1, maxval, vec![0, 0, 0, 7, 7, 8]).unwrap());
+            assert_ne!(grey, Pixmap::new(1, 2, maxval, vec![0, 0, 0, 7, 7, 7]).unwrap());
+            assert_eq!(grey.into_stored(), samples);
+        }
+        assert_eq!(Pixmap::new(2, 1, 255, vec![0, 7]), None, "RGB is asked for");
     }
 
     #[test]

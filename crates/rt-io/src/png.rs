@@ -1,17 +1,19 @@
-//! Writing PNG, through the `image` crate.
+//! Writing PNG, through the `png` crate.
 
 use std::io::{self, Write};
 
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageError};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
 use crate::pixmap::{Pixmap, Samples};
 
-/// Writes an RGB picture of 8 bits where `maxval <= 255`, else of 16; samples are scaled if `maxval` is not 255 or 65535,
+/// Bytes that the encoder takes besides: a table for matches, rows.
+const SLACK: usize = 1 << 20;
+
+/// Writes an RGB picture, grey if it was read from a grey file, of 8 bits where `maxval <= 255`, else of 16; samples are scaled if `maxval` is not 255 or 65535,
 /// the two that a PNG can have.
 ///
 /// # Errors
-/// Whatever `out` reports, and a width or height of 2^31 or more.
+/// Whatever `out` reports, a width or height of 2^31 or more, and too little memory: what is written is gathered first.
 ///
 /// ```
 /// use rt_io::{Limits, Pixmap, decode_image, png};
@@ -30,24 +32,39 @@ pub fn write(pixmap: &Pixmap, out: &mut (impl Write + ?Sized)) -> io::Result<()>
     let pixmap = match (pixmap.raw(), pixmap.maxval()) {
         (_, 255 | 65535) => pixmap,
         (Samples::Eight(_), _) => {
-            scaled = pixmap.scaled(255);
+            scaled = pixmap.try_scaled(255)?;
             &scaled
         }
         (Samples::Sixteen(_), _) => {
-            scaled = pixmap.scaled(65535);
+            scaled = pixmap.try_scaled(65535)?;
             &scaled
         }
     };
-    let encoder = PngEncoder::new(out);
-    let done = match pixmap.raw() {
-        Samples::Eight(samples) => encoder.write_image(samples, width, height, ExtendedColorType::Rgb8),
-        Samples::Sixteen(samples) => {
-            let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_ne_bytes()).collect();
-            encoder.write_image(&bytes, width, height, ExtendedColorType::Rgb16)
-        }
+    // The encoder gathers what it writes, at most a little more than the samples; the room is asked for, and given back.
+    let length = match pixmap.raw() {
+        Samples::Eight(samples) => samples.len(),
+        Samples::Sixteen(samples) => 2 * samples.len(),
     };
-    done.map_err(|error| match error {
-        ImageError::IoError(error) => error,
+    Vec::<u8>::new().try_reserve_exact(length + length / 4 + SLACK)?;
+    let mut encoder = Encoder::new(out, width, height);
+    encoder.set_color(if pixmap.is_grey() { ColorType::Grayscale } else { ColorType::Rgb });
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    match pixmap.raw() {
+        Samples::Eight(samples) => {
+            encoder.set_depth(BitDepth::Eight);
+            encoder.write_header().and_then(|mut writer| writer.write_image_data(samples))
+        }
+        Samples::Sixteen(samples) => {
+            encoder.set_depth(BitDepth::Sixteen);
+            let mut bytes = Vec::new();
+            bytes.try_reserve_exact(length)?;
+            bytes.extend(samples.iter().flat_map(|sample| sample.to_be_bytes()));
+            encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes))
+        }
+    }
+    .map_err(|error| match error {
+        EncodingError::IoError(error) => error,
         other => io::Error::other(other),
     })
 }

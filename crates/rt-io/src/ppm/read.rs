@@ -137,7 +137,7 @@ pub enum PpmError {
         found: u64,
     },
     /// The operating system has not enough memory for a picture whose bytes are there.
-    #[error("not enough memory for {samples} samples")]
+    #[error("not enough memory for {samples} samples; scale the picture down first")]
     OutOfMemory {
         /// Number of samples that the header promises.
         samples: u64,
@@ -174,7 +174,7 @@ fn remedy(found: &[u8; 2]) -> &'static str {
 /// Reads the picture at the start of a stream whose length is unknown, such as a pipe.
 ///
 /// Memory grows with the bytes that arrive: at most 64 MiB more than the samples take, one byte each where
-/// `maxval <= 255`, else two; grey samples count three times. The reader needs no buffer of its own, and may be left
+/// `maxval <= 255`, else two; grey samples count once. The reader needs no buffer of its own, and may be left
 /// anywhere behind the picture.
 ///
 /// # Errors
@@ -263,13 +263,6 @@ impl Header {
     }
 }
 
-fn grey_to_rgb<S: Copy>(grey: &[S], header: &Header) -> Result<Vec<S>, PpmError> {
-    let mut samples = Vec::new();
-    samples.try_reserve_exact(3 * grey.len()).map_err(|_| header.out_of_memory())?;
-    samples.extend(grey.iter().flat_map(|&sample| [sample; 3]));
-    Ok(samples)
-}
-
 struct Number {
     offset: u64,
     value: u32,
@@ -301,11 +294,11 @@ impl<R: Read> Source<R> {
         let samples = if header.maxval <= 255 {
             let convert = |value: u16| (value & 0xff) as u8;
             let samples = if header.plain { self.plain(&header, convert)? } else { self.bytes(&header)? };
-            Samples::Eight(if header.channels == 1 { grey_to_rgb(&samples, &header)? } else { samples })
+            Samples::Eight(samples)
         } else {
             let samples =
                 if header.plain { self.plain(&header, |value| value)? } else { self.pairs(&header)? };
-            Samples::Sixteen(if header.channels == 1 { grey_to_rgb(&samples, &header)? } else { samples })
+            Samples::Sixteen(samples)
         };
         let size = |number| usize::try_from(number).map_err(|_| header.out_of_memory());
         let pixmap = Pixmap::from_checked(size(header.width)?, size(header.height)?, header.maxval, samples);

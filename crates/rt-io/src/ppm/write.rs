@@ -69,11 +69,35 @@ fn write_lines(
     };
     write!(out, "{magic}\n{lines}{} {}\n{}\n", pixmap.width(), pixmap.height(), pixmap.maxval())?;
     match (encoding, pixmap.raw()) {
-        (Encoding::Raw, Samples::Eight(samples)) => out.write_all(samples),
-        (Encoding::Raw, Samples::Sixteen(samples)) => write_pairs(samples, out),
-        (Encoding::Plain, Samples::Eight(samples)) => write_plain(pixmap, samples, out),
-        (Encoding::Plain, Samples::Sixteen(samples)) => write_plain(pixmap, samples, out),
+        (Encoding::Raw, Samples::Eight(samples)) => in_rgb(pixmap, samples, |rows| out.write_all(rows)),
+        (Encoding::Raw, Samples::Sixteen(samples)) => in_rgb(pixmap, samples, |rows| write_pairs(rows, out)),
+        (Encoding::Plain, Samples::Eight(samples)) => {
+            in_rgb(pixmap, samples, |rows| write_plain(pixmap, rows, out))
+        }
+        (Encoding::Plain, Samples::Sixteen(samples)) => {
+            in_rgb(pixmap, samples, |rows| write_plain(pixmap, rows, out))
+        }
     }
+}
+
+/// Hands whole rows of RGB samples on: all at once, or some rows at a time of a picture that is stored as grey.
+fn in_rgb<S: Copy>(
+    pixmap: &Pixmap,
+    samples: &[S],
+    mut write: impl FnMut(&[S]) -> io::Result<()>,
+) -> io::Result<()> {
+    if !pixmap.is_grey() {
+        return write(samples);
+    }
+    let rows = (PIECE / (3 * pixmap.width())).max(1);
+    let mut rgb = Vec::new();
+    for grey in samples.chunks(rows * pixmap.width()) {
+        rgb.clear();
+        rgb.try_reserve(3 * grey.len())?;
+        rgb.extend(grey.iter().flat_map(|&sample| [sample; 3]));
+        write(&rgb)?;
+    }
+    Ok(())
 }
 
 /// Bytes gathered before they are handed on.

@@ -1,0 +1,100 @@
+//! PNG: every colour type, depth and interlacing, through the `png` crate, row by row, so that alpha and the second copy
+//! that some depths need never take the memory of a whole picture. All checksums are checked.
+
+use std::io::{self, Cursor};
+
+use png::{BitDepth, ColorType, DecodeOptions, Decoder, DecodingError, Limits as PngLimits, Transformations};
+
+use crate::Limits;
+use crate::decode::{DecodeError, Decoded, SLACK, Size};
+use crate::pixmap::{Pixmap, Samples};
+
+pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
+    // The signature, the length and name of the first chunk, width, height.
+    let number =
+        |at: usize| bytes.get(at..).and_then(<[u8]>::first_chunk).map(|&four| u32::from_be_bytes(four));
+    let (Some(width), Some(height)) = (number(16), number(20)) else {
+        return Err(DecodeError::Truncated { format: "PNG" });
+    };
+    // Deflate: a bit for at most 258 / 2 bytes, each of eight one-bit pixels.
+    let size = Size::check("PNG", width, height, bytes, 8 * 8 * 258 / 2, limits)?;
+
+    let mut options = DecodeOptions::default();
+    options.set_ignore_checksums(false);
+    options.set_ignore_text_chunk(true);
+    options.set_ignore_iccp_chunk(true);
+    let mut decoder = Decoder::new_with_options(Cursor::new(bytes), options);
+    // A row, or what stands besides the picture.
+    let most = usize::try_from(width).unwrap_or(usize::MAX).saturating_mul(16).saturating_add(SLACK);
+    decoder.set_limits(PngLimits { bytes: most });
+    // To whole bytes; a palette is looked up; a transparent colour becomes alpha.
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(error)?;
+    let (color, depth) = reader.output_color_type();
+    let channels = color.samples();
+    let (kept, has_alpha) = match color {
+        ColorType::Grayscale => (1, false),
+        ColorType::GrayscaleAlpha => (1, true),
+        ColorType::Rgb => (3, false),
+        ColorType::Rgba => (3, true),
+        ColorType::Indexed => return Err(DecodeError::broken("PNG", "a palette that was not looked up")),
+    };
+    let (columns, rows) = size.in_memory()?;
+
+    // The seven passes of an interlaced picture come together in a whole one.
+    let mut frame = Vec::new();
+    let line = reader.output_line_size(width).ok_or_else(|| size.out_of_memory(u64::MAX))?;
+    let interlaced = reader.info().interlaced;
+    if interlaced {
+        frame = size.filled(line.checked_mul(rows).ok_or_else(|| size.out_of_memory(u64::MAX))?, 0)?;
+        reader.next_frame(&mut frame).map_err(error)?;
+    }
+    let wide = depth == BitDepth::Sixteen;
+    let (mut eight, mut sixteen) = (Vec::new(), Vec::new());
+    if wide {
+        sixteen = size.room(kept * columns * rows)?;
+    } else {
+        eight = size.room(kept * columns * rows)?;
+    }
+    let mut transparent = false;
+    for y in 0..rows {
+        let next;
+        let row = if interlaced {
+            &frame[y * line..][..line]
+        } else {
+            next = reader.next_row().map_err(error)?.ok_or(DecodeError::Truncated { format: "PNG" })?;
+            next.data()
+        };
+        if wide {
+            let (pairs, _) = row.as_chunks();
+            let samples = pairs.iter().map(|&pair| u16::from_be_bytes(pair));
+            transparent |=
+                has_alpha && samples.clone().skip(kept).step_by(channels).any(|alpha| alpha != u16::MAX);
+            sixteen
+                .extend(samples.enumerate().filter(|(at, _)| at % channels < kept).map(|(_, sample)| sample));
+        } else if has_alpha {
+            for pixel in row.chunks_exact(channels) {
+                transparent |= pixel[kept] != u8::MAX;
+                eight.extend_from_slice(&pixel[..kept]);
+            }
+        } else {
+            eight.extend_from_slice(row);
+        }
+    }
+    // The rest of the file: the checksum of the samples, and the last chunk.
+    reader.finish().map_err(error)?;
+    let (maxval, samples) =
+        if wide { (65535, Samples::Sixteen(sixteen)) } else { (255, Samples::Eight(eight)) };
+    let pixmap = Pixmap::from_checked(columns, rows, maxval, samples);
+    let pixmap = pixmap.ok_or_else(|| DecodeError::broken("PNG", "rows of another length"))?;
+    Ok(Decoded { pixmap, transparent })
+}
+
+fn error(error: DecodingError) -> DecodeError {
+    match error {
+        DecodingError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+            DecodeError::Truncated { format: "PNG" }
+        }
+        error => DecodeError::broken("PNG", error),
+    }
+}
