@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rt_io::{Limits, Pixmap, ReadImageError, decode_image, read_image};
+use rt_io::{Limits, Pixmap, ReadImageError, Samples, decode_image, read_image};
 use rt_shade::Texture;
 
 /// Reads the image at `path`.
@@ -18,5 +18,12 @@ pub(crate) fn decode(bytes: &[u8], path: &str) -> Result<Texture, ReadImageError
 
 fn texture(pixmap: Pixmap) -> Texture {
     let (width, height, maxval) = (pixmap.width(), pixmap.height(), pixmap.maxval());
-    Texture::new(width, height, pixmap.into_samples(), maxval).expect("a pixmap's invariant is a texture's")
+    // As they are stored: a copy of a large image may be more than the memory.
+    let texture = match pixmap.into_stored() {
+        Samples::Eight(samples) => {
+            Texture::from_bytes(width, height, samples, u8::try_from(maxval).unwrap_or(u8::MAX))
+        }
+        Samples::Sixteen(samples) => Texture::new(width, height, samples, maxval),
+    };
+    texture.expect("a pixmap's invariant is a texture's")
 }

@@ -19,25 +19,48 @@ use crate::color::clamp_channel;
 
 /// A picture that colours a surface: `width` x `height` texels of RGB samples, row 0 at the top.
 ///
-/// Samples are used as they are stored, divided by `maxval`: no gamma.
+/// Samples are used as they are stored, divided by `maxval`: no gamma. They take a byte each if they are given as bytes,
+/// else two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     width: usize,
     height: usize,
-    samples: Vec<u16>,
+    /// Samples of a texel: 3, or 1 that stands for all three.
+    channels: usize,
+    samples: Samples,
     maxval: u16,
 }
 
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Samples {
+    Eight(Vec<u8>),
+    Sixteen(Vec<u16>),
+}
+
 impl Texture {
-    /// Returns the texture with these RGB samples, interleaved, row by row from the top.
+    /// Returns the texture with these samples, row by row from the top: RGB interleaved, or one a texel, which is grey.
     ///
-    /// `None` if a dimension or `maxval` is 0, if there are not exactly `3 width height` samples, or if one of
-    /// them exceeds `maxval`.
+    /// `None` if a dimension or `maxval` is 0, if there are neither `3 width height` nor `width height` samples, or if
+    /// one of them exceeds `maxval`.
     pub fn new(width: usize, height: usize, samples: Vec<u16>, maxval: u16) -> Option<Self> {
-        let length = width.checked_mul(height)?.checked_mul(3)?;
-        let valid =
-            length != 0 && maxval != 0 && samples.len() == length && samples.iter().all(|&s| s <= maxval);
-        valid.then_some(Self { width, height, samples, maxval })
+        let channels = channels(width, height, samples.len())?;
+        let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
+        valid.then_some(Self { width, height, channels, samples: Samples::Sixteen(samples), maxval })
+    }
+
+    /// Returns the texture with samples that are bytes, as [`new`](Self::new) does with larger ones.
+    ///
+    /// ```
+    /// use rt_shade::Texture;
+    ///
+    /// let grey = Texture::from_bytes(2, 1, vec![0, 51], 255).unwrap();
+    /// assert_eq!(grey.nearest(0.75, 0.5), glam::DVec3::splat(0.2));
+    /// ```
+    pub fn from_bytes(width: usize, height: usize, samples: Vec<u8>, maxval: u8) -> Option<Self> {
+        let channels = channels(width, height, samples.len())?;
+        let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
+        let (samples, maxval) = (Samples::Eight(samples), maxval.into());
+        valid.then_some(Self { width, height, channels, samples, maxval })
     }
 
     /// The number of columns; not 0.
@@ -97,9 +120,24 @@ impl Texture {
 
     /// The three samples of a texel, not yet divided by `maxval`.
     fn samples_at(&self, column: usize, row: usize) -> DVec3 {
-        let start = 3 * (row * self.width + column);
-        DVec3::from_array([0, 1, 2].map(|channel| f64::from(self.samples[start + channel])))
+        let start = self.channels * (row * self.width + column);
+        match (&self.samples, self.channels) {
+            (Samples::Eight(samples), 1) => DVec3::splat(samples[start].into()),
+            (Samples::Sixteen(samples), 1) => DVec3::splat(samples[start].into()),
+            (Samples::Eight(samples), _) => of_three(&samples[start..start + 3]),
+            (Samples::Sixteen(samples), _) => of_three(&samples[start..start + 3]),
+        }
     }
+}
+
+fn of_three<S: Copy + Into<f64>>(samples: &[S]) -> DVec3 {
+    DVec3::new(samples[0].into(), samples[1].into(), samples[2].into())
+}
+
+/// The samples of a texel, if there are so many in all.
+fn channels(width: usize, height: usize, length: usize) -> Option<usize> {
+    let texels = width.checked_mul(height).filter(|&texels| texels != 0)?;
+    [1, 3].into_iter().find(|&channels| texels.checked_mul(channels) == Some(length))
 }
 
 /// Returns `u` modulo 1, in `0..=1` (1 itself, and what rounds to it, stay 1); not a finite number: 0.
@@ -151,6 +189,29 @@ mod tests {
         assert_eq!(Texture::new(1, 0, vec![], 5), None, "no row");
         assert_eq!(Texture::new(1, 1, vec![0; 3], 0), None, "maxval 0");
         assert_eq!(Texture::new(usize::MAX, 2, vec![], 5), None, "a product beyond usize");
+        assert_eq!(Texture::from_bytes(1, 1, vec![0, 0, 6], 5), None, "a byte above maxval");
+        assert_eq!(Texture::from_bytes(1, 1, vec![0; 2], 5), None, "a byte too few");
+        assert_eq!(Texture::from_bytes(1, 1, vec![0; 3], 0), None, "maxval 0");
+    }
+
+    #[test]
+    fn bytes_and_grey_look_up_as_larger_samples_do() {
+        let grey: Vec<u8> = (0..12).map(|index| index * 20).collect();
+        let rgb: Vec<u8> = grey.iter().flat_map(|&sample| [sample; 3]).collect();
+        let wide = |samples: &[u8]| samples.iter().map(|&sample| u16::from(sample)).collect();
+        let expected = Texture::new(4, 3, wide(&rgb), 255).expect("the samples fit");
+        for texture in [
+            Texture::new(4, 3, wide(&grey), 255),
+            Texture::from_bytes(4, 3, grey.clone(), 255),
+            Texture::from_bytes(4, 3, rgb.clone(), 255),
+        ] {
+            let texture = texture.expect("the samples fit");
+            for index in 0..100 {
+                let (u, v) = (f64::from(index % 11) / 10.0, f64::from(index) / 99.0);
+                assert_eq!(texture.nearest(u, v), expected.nearest(u, v), "{u} {v}");
+                assert_eq!(texture.bilinear(u, v), expected.bilinear(u, v), "{u} {v}");
+            }
+        }
     }
 
     proptest! {
