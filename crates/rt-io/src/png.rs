@@ -1,5 +1,6 @@
 //! Writing PNG, through the `png` crate.
 
+use std::hint::black_box;
 use std::io::{self, Write};
 
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
@@ -40,30 +41,28 @@ pub fn write(pixmap: &Pixmap, out: &mut (impl Write + ?Sized)) -> io::Result<()>
             &scaled
         }
     };
-    // The encoder gathers what it writes, at most a little more than the samples; the room is asked for, and given back.
-    let length = match pixmap.raw() {
-        Samples::Eight(samples) => samples.len(),
-        Samples::Sixteen(samples) => 2 * samples.len(),
+    let mut pairs = Vec::new();
+    let (depth, bytes): (_, &[u8]) = match pixmap.raw() {
+        Samples::Eight(samples) => (BitDepth::Eight, samples),
+        Samples::Sixteen(samples) => {
+            pairs.try_reserve_exact(2 * samples.len())?;
+            pairs.extend(samples.iter().flat_map(|sample| sample.to_be_bytes()));
+            (BitDepth::Sixteen, &pairs)
+        }
     };
-    Vec::<u8>::new().try_reserve_exact(length + length / 4 + SLACK)?;
+    // The encoder gathers what it writes, at most a little more than the samples; the room is asked for, and given back.
+    // Without the black box neither would happen.
+    let mut gathered = Vec::<u8>::new();
+    gathered.try_reserve_exact(bytes.len() + bytes.len() / 4 + SLACK)?;
+    drop(black_box(gathered));
+
     let mut encoder = Encoder::new(out, width, height);
     encoder.set_color(if pixmap.is_grey() { ColorType::Grayscale } else { ColorType::Rgb });
+    encoder.set_depth(depth);
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
-    match pixmap.raw() {
-        Samples::Eight(samples) => {
-            encoder.set_depth(BitDepth::Eight);
-            encoder.write_header().and_then(|mut writer| writer.write_image_data(samples))
-        }
-        Samples::Sixteen(samples) => {
-            encoder.set_depth(BitDepth::Sixteen);
-            let mut bytes = Vec::new();
-            bytes.try_reserve_exact(length)?;
-            bytes.extend(samples.iter().flat_map(|sample| sample.to_be_bytes()));
-            encoder.write_header().and_then(|mut writer| writer.write_image_data(&bytes))
-        }
-    }
-    .map_err(|error| match error {
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(bytes));
+    written.map_err(|error| match error {
         EncodingError::IoError(error) => error,
         other => io::Error::other(other),
     })

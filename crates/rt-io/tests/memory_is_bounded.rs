@@ -1,8 +1,12 @@
 //! A small file never makes a reader take more than 64 MiB, whatever it promises, and a whole one takes what it holds.
 
+#![expect(clippy::cast_possible_truncation, reason = "the sizes of these pictures are small")]
+
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use ::png::{BitDepth, ColorType, Encoder};
 use rt_io::ppm::{self, Encoding};
 use rt_io::{Limits, Pixmap, decode_image, png};
 
@@ -187,6 +191,8 @@ fn readers_take_memory_in_proportion_to_the_bytes() {
         for encoding in [Encoding::Raw, Encoding::Plain] {
             let mut bytes = Vec::new();
             ppm::write(&pixmap, encoding, &mut bytes).unwrap();
+            let ((), peak) = peak_of(|| ppm::write(&pixmap, encoding, &mut io::sink()).unwrap());
+            assert!(peak < 1 << 20, "{encoding:?} {maxval} written: {peak} bytes");
             let samples = 18_000_000 * bytes_per_sample;
             let (result, peak) = peak_of(|| ppm::read_bytes(&bytes, &limits));
             assert_eq!(result.unwrap(), pixmap);
@@ -196,4 +202,142 @@ fn readers_take_memory_in_proportion_to_the_bytes() {
             assert!(peak < samples + MOST, "{encoding:?} {maxval} from a pipe: {peak} bytes");
         }
     }
+
+    whole_pictures_take_what_the_limits_say();
+}
+
+const COLUMNS: usize = 3000;
+const ROWS: usize = 2000;
+const PIXELS: usize = COLUMNS * ROWS;
+
+/// More than tables and rows take.
+const LITTLE: usize = 1 << 20;
+
+/// A PNG of zeros, not interlaced.
+fn black_png(color: ColorType, depth: BitDepth) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, COLUMNS as u32, ROWS as u32);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let bits = color.samples() * depth as usize;
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&vec![0; (COLUMNS * bits).div_ceil(8) * ROWS]).unwrap();
+    drop(writer);
+    bytes
+}
+
+/// Bytes a pixel, of the picture and while it is decoded, as the docs of `Limits` have them.
+fn whole_pictures_take_what_the_limits_say() {
+    let limits = Limits::default();
+    let check = |name: &str, bytes: &[u8], most: usize, kept: usize| {
+        let before = USED.load(Ordering::Relaxed);
+        let (decoded, peak) = peak_of(|| decode_image(bytes, &limits));
+        let pixmap = decoded.unwrap_or_else(|error| panic!("{name}: {error:?}")).pixmap;
+        assert_eq!((pixmap.width(), pixmap.height()), (COLUMNS, ROWS), "{name}");
+        let held = USED.load(Ordering::Relaxed) - before;
+        assert_eq!(held, kept, "{name}: bytes of the picture");
+        assert!(peak < most + LITTLE, "{name}: {peak} bytes");
+
+        // To PPM, as `convert` has it, in pieces; to PNG, in memory, but no more than the samples once more.
+        let ((), peak) = peak_of(|| ppm::write(&pixmap, Encoding::Raw, &mut io::sink()).unwrap());
+        assert!(peak < LITTLE, "{name} to PPM: {peak} bytes");
+        // The way to a texture takes nothing.
+        let (stored, peak) = peak_of(|| pixmap.into_stored());
+        assert!(peak < LITTLE, "{name} as it is stored: {peak} bytes");
+        drop(stored);
+    };
+
+    use BitDepth::{Eight, One, Sixteen};
+    for (color, depth, kept) in [
+        (ColorType::Grayscale, One, 1),
+        (ColorType::Grayscale, Eight, 1),
+        (ColorType::Grayscale, Sixteen, 2),
+        (ColorType::GrayscaleAlpha, Eight, 1),
+        (ColorType::Rgb, Eight, 3),
+        (ColorType::Rgba, Eight, 3),
+        (ColorType::Rgba, Sixteen, 6),
+    ] {
+        let bytes = black_png(color, depth);
+        check(&format!("PNG {color:?} {depth:?}"), &bytes, kept * PIXELS, kept * PIXELS);
+    }
+
+    let size = [(ROWS as u16).to_be_bytes(), (COLUMNS as u16).to_be_bytes()].concat();
+    for (progressive, grey) in [(false, false), (false, true), (true, false), (true, true)] {
+        let bytes = black_jpeg(&size, progressive, grey);
+        let samples = if grey { 1 } else { 3 };
+        // Whole blocks are a little more.
+        let planes = samples * COLUMNS.next_multiple_of(8) * ROWS.next_multiple_of(8);
+        let coefficients = if progressive { 2 * planes } else { 0 };
+        let picture = if grey { 0 } else { 3 * PIXELS };
+        // A grey picture is its plane.
+        let kept = if grey { planes } else { picture };
+        let most = planes + coefficients.max(picture);
+        check(&format!("JPEG, progressive: {progressive}, grey: {grey}"), &bytes, most, kept);
+    }
+
+    // One bit, in one strip that packs to next to nothing.
+    let row_bytes = COLUMNS.div_ceil(8);
+    let packed: Vec<u8> = (0..row_bytes * ROWS / 125).flat_map(|_| [130, 0]).collect();
+    check("TIFF of one bit", &black_tiff(&packed), PIXELS + row_bytes * ROWS, PIXELS);
+}
+
+/// A JPEG whose coefficients are all zero: one code of one bit stands for nothing, be it a difference or the end of a block.
+fn black_jpeg(size: &[u8], progressive: bool, grey: bool) -> Vec<u8> {
+    let ids: &[u8] = if grey { &[1] } else { &[1, 2, 3] };
+    let count = ids.len() as u8;
+    let mut bytes = vec![0xff, 0xd8];
+    let mut segment = |marker: u8, data: &[u8]| {
+        bytes.extend([0xff, marker]);
+        bytes.extend((data.len() as u16 + 2).to_be_bytes());
+        bytes.extend(data);
+    };
+    segment(0xdb, &[&[0], &[1; 64][..]].concat());
+    let table: Vec<u8> = [&[1][..], &[0; 15], &[0]].concat();
+    segment(0xc4, &[&[0x00][..], &table, &[0x10], &table].concat());
+    let components: Vec<u8> = ids.iter().flat_map(|&id| [id, 0x11, 0]).collect();
+    segment(if progressive { 0xc2 } else { 0xc0 }, &[&[8][..], size, &[count], &components].concat());
+    let blocks = COLUMNS.div_ceil(8) * ROWS.div_ceil(8);
+    let mut scan = |ids: &[u8], band: [u8; 3], bits: usize| {
+        let selectors: Vec<u8> = ids.iter().flat_map(|&id| [id, 0]).collect();
+        let data = [&[ids.len() as u8][..], &selectors, &band].concat();
+        bytes.extend([0xff, 0xda]);
+        bytes.extend((data.len() as u16 + 2).to_be_bytes());
+        bytes.extend(data);
+        bytes.extend(vec![0; bits.div_ceil(8)]);
+    };
+    if progressive {
+        scan(ids, [0, 0, 0], blocks * ids.len());
+        for &id in ids {
+            scan(&[id], [1, 63, 0], blocks);
+        }
+    } else {
+        scan(ids, [0, 63, 0], 2 * blocks * ids.len());
+    }
+    bytes.extend([0xff, 0xd9]);
+    bytes
+}
+
+/// A TIFF of one bit, packed by runs of bytes, in one strip.
+fn black_tiff(packed: &[u8]) -> Vec<u8> {
+    let entries: [(u16, u32); 8] = [
+        (256, COLUMNS as u32),
+        (257, ROWS as u32),
+        (258, 1),
+        (259, 32773),
+        (262, 1),
+        (273, 8),
+        (278, ROWS as u32),
+        (279, packed.len() as u32),
+    ];
+    let padded = packed.len().next_multiple_of(2);
+    let mut bytes = [b"II*\0", &(8 + padded as u32).to_le_bytes()[..], packed].concat();
+    bytes.resize(8 + padded, 0);
+    bytes.extend((entries.len() as u16).to_le_bytes());
+    for (tag, value) in entries {
+        bytes.extend(tag.to_le_bytes());
+        bytes.extend([4, 0, 1, 0, 0, 0]);
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend([0; 4]);
+    bytes
 }
