@@ -64,6 +64,11 @@ impl<T: Real> Tangent<T> {
         self.index
     }
 
+    /// The same for a set that holds the spheres of `padded` alone.
+    pub(super) fn renumbered(&self) -> Self {
+        Self { index: [0, 1, 2, 3], ..*self }
+    }
+
     /// Whether a sphere is of the support.
     #[inline(always)]
     pub(super) fn has(&self, index: usize) -> bool {

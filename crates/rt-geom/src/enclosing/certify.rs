@@ -137,22 +137,28 @@ fn round_up<S: Simd>(simd: S, high: f64x4<S>, low: f64x4<S>) -> f64 {
 /// Moves the center of `tangent` to the doubles nearest to the true center, and brackets the radius there.
 ///
 /// Returns the bracket, and a lower bound for the radius of any sphere that encloses the spheres of `tangent`.
+#[inline(never)]
 pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) -> (Bracket, f64) {
-    let first = &all[tangent.support()[0]];
-    if tangent.support().len() == 1 {
-        let radius = first.radius();
-        return (Bracket { center: first.center(), low: radius, high: radius }, radius);
-    }
-    let [_, b, c, d] = tangent.padded();
-    let spheres = [first, &all[b], &all[c], &all[d]];
-    let far = first.center().abs().max_element() > FAR * (tangent.rho + first.radius());
-    if !far {
-        let (bracket, bound, clear) = certify_in_place(simd, tangent, spheres);
-        if clear {
-            return (bracket, bound);
-        }
-    }
-    certify_apart(simd, tangent, spheres)
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let first = &all[tangent.support()[0]];
+            if tangent.support().len() == 1 {
+                let radius = first.radius();
+                return (Bracket { center: first.center(), low: radius, high: radius }, radius);
+            }
+            let [_, b, c, d] = tangent.padded();
+            let spheres = [first, &all[b], &all[c], &all[d]];
+            let far = first.center().abs().max_element() > FAR * (tangent.rho + first.radius());
+            if !far {
+                let (bracket, bound, clear) = certify_in_place(simd, tangent, spheres);
+                if clear {
+                    return (bracket, bound);
+                }
+            }
+            certify_apart(simd, tangent, spheres)
+        },
+    )
 }
 
 /// Beyond so many radii from the origin the rounding of the center moves it too far for the lower bound to be sharp.
@@ -169,9 +175,11 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
         let to = sphere.center();
         let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_diff(to[axis], origin[axis]));
         lost = lost.max(x.1.abs() + y.1.abs() + z.1.abs());
-        Sphere::new(DVec3::new(x.0, y.0, z.0), sphere.radius()).unwrap_or(*sphere)
+        Sphere::new(DVec3::new(x.0, y.0, z.0), sphere.radius())
+            .expect("distances in an ordinary set are finite")
     });
-    let (bracket, bound, _) = certify_in_place(simd, tangent, moved.each_ref());
+    // (The center of the copy is less than its radius from the origin: it is not far, and no rounding is unclear.)
+    let (bracket, bound) = certify(simd, &tangent.renumbered(), &moved);
     // Moving a center changes the radius by at most as much.
     let bound = if lost > 0.0 { (bound - lost * (1.0 + 8.0 * U)).next_down() } else { bound };
     let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_sum(origin[axis], bracket.center[axis]));
@@ -183,16 +191,8 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
 /// Brackets the radius around the doubles nearest to the center of `tangent`, whose spheres are given, the largest first.
 ///
 /// Returns the bracket, a lower bound, and whether the nearest doubles are clear.
-#[inline(never)]
-fn certify_in_place<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64, bool) {
-    simd.vectorize(
-        #[inline(always)]
-        || certify_here(simd, tangent, spheres),
-    )
-}
-
 #[inline(always)]
-fn certify_here<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64, bool) {
+fn certify_in_place<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64, bool) {
     let first = spheres[0];
     let origin = first.center();
     let [k1, k2, k3] = tangent.dual;

@@ -396,7 +396,10 @@ mod tests {
                     let count = counts.next().unwrap();
                     let distance = if offset == 0 { 0.0 } else { 10.0_f64.powi(offset) };
                     // The size is any, or one that shows at this offset.
-                    let near = 10.0_f64.powf(f64::from(offset) - 18.0 * unit());
+                    let near = match offset {
+                        0 => f64::from_bits(1) * 1000.0_f64.powf(unit()),
+                        decade => 10.0_f64.powf(f64::from(decade) - 18.0 * unit()),
+                    };
                     for size in [10.0_f64.powi(scale), near] {
                         let offset = distance * DVec3::new(unit(), unit(), unit());
                         let set = some_at(kind, count, offset, size, &mut unit);
@@ -415,6 +418,20 @@ mod tests {
             }
         }
         assert!(most >= 1.0, "{most}");
+    }
+
+    #[test]
+    fn of_the_doubles_around_a_center_the_best_is_taken() {
+        // Doubles are whole numbers here. The true center is half-way along two axes.
+        let far = 2.0_f64.powi(52);
+        let points = |at: &[(f64, f64)]| -> Vec<Sphere> {
+            at.iter().map(|&(x, y)| ball(far + x, far + y, 0.0, 0.0)).collect()
+        };
+        // From (0, 0) and (1, 1) the points reach √2.
+        let pair = enclosing_sphere(&points(&[(0.0, 0.0), (1.0, 1.0)])).unwrap();
+        assert_eq!(pair.sphere.radius(), 1.0, "{pair:?}");
+        let three = enclosing_sphere(&points(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)])).unwrap();
+        assert_eq!(three.sphere.radius(), 1.0, "{three:?}");
     }
 
     #[test]
