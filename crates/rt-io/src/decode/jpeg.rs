@@ -279,8 +279,11 @@ impl Frame {
                         color::upsample(&component.plane, y, ratio, row);
                     }
                     let [a, b, c] = &rows;
-                    for ((&a, &b), &c) in a.iter().zip(b).zip(c).take(self.width) {
-                        samples.extend(if is_rgb { [a, b, c] } else { color::ycc_to_rgb(a, b, c) });
+                    let pixels = a.iter().zip(b).zip(c).take(self.width);
+                    if is_rgb {
+                        samples.extend(pixels.flat_map(|((&a, &b), &c)| [a, b, c]));
+                    } else {
+                        samples.extend(pixels.flat_map(|((&a, &b), &c)| color::ycc_to_rgb(a, b, c)));
                     }
                 }
                 samples

@@ -59,12 +59,11 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
         let tile =
             (number(tag::TILE_WIDTH, "width of a tile")?, number(tag::TILE_LENGTH, "height of a tile")?);
         check(tile.0, tile.1)?;
-        // The decoder fails on what fills up the last tiles (no end of LZW data, a panic if there are planes), so that it
-        // is told of whole tiles alone.
-        let whole = |length: u32, tile: u32| length.checked_next_multiple_of(tile);
-        let too_large = || refuse("tiles that reach too far".to_string());
-        patches.push((tag::IMAGE_WIDTH, whole(width, tile.0).ok_or_else(too_large)?));
-        patches.push((tag::IMAGE_LENGTH, whole(height, tile.1).ok_or_else(too_large)?));
+        // The decoder fails on what fills up the last tiles of a row: it may find no end of LZW data there. So it is told of
+        // whole tiles alone. (It panics on planes of tiles only if asked for the whole picture.)
+        let whole = width.checked_next_multiple_of(tile.0);
+        patches
+            .push((tag::IMAGE_WIDTH, whole.ok_or_else(|| refuse("tiles that reach too far".to_string()))?));
         Some(tile)
     } else {
         None

@@ -39,7 +39,12 @@ impl Plane {
         }
         // Columns, kept with two bits more; then rows, with the 8 of both passes' scale.
         for x in 0..8 {
-            let column = one_dimension([0, 1, 2, 3, 4, 5, 6, 7].map(|y| work[8 * y + x]), SCALE - EXTRA);
+            let column = [0, 1, 2, 3, 4, 5, 6, 7].map(|y| work[8 * y + x]);
+            let column = match column {
+                // Most columns of a picture; the same numbers in one step.
+                [constant, 0, 0, 0, 0, 0, 0, 0] => [constant << EXTRA; 8],
+                _ => one_dimension(column, SCALE - EXTRA),
+            };
             for (y, value) in column.into_iter().enumerate() {
                 work[8 * y + x] = value;
             }
