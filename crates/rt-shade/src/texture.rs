@@ -96,7 +96,13 @@ impl Texture {
     /// Coordinates outside `0..=1` are treated as [`texel`](Self::texel) says.
     pub fn nearest(&self, u: f64, v: f64) -> DVec3 {
         let (column, row) = self.texel(u, v);
-        self.samples_at(column, row) / f64::from(self.maxval)
+        let texel = match (&self.samples, self.channels) {
+            (Samples::Eight(samples), 1) => self.samples_at::<_, 1>(samples, column, row),
+            (Samples::Eight(samples), _) => self.samples_at::<_, 3>(samples, column, row),
+            (Samples::Sixteen(samples), 1) => self.samples_at::<_, 1>(samples, column, row),
+            (Samples::Sixteen(samples), _) => self.samples_at::<_, 3>(samples, column, row),
+        };
+        texel / f64::from(self.maxval)
     }
 
     /// Returns the colour at `(u, v)`, interpolated linearly between the four nearest texel centers.
@@ -104,6 +110,20 @@ impl Texture {
     /// Neighbours wrap around in `u` and end at the first and last row in `v`. Coordinates outside `0..=1` are
     /// treated as [`texel`](Self::texel) says. At a texel center it is that texel's colour.
     pub fn bilinear(&self, u: f64, v: f64) -> DVec3 {
+        match (&self.samples, self.channels) {
+            (Samples::Eight(samples), 1) => self.bilinear_in::<_, 1>(samples, u, v),
+            (Samples::Eight(samples), _) => self.bilinear_in::<_, 3>(samples, u, v),
+            (Samples::Sixteen(samples), 1) => self.bilinear_in::<_, 1>(samples, u, v),
+            (Samples::Sixteen(samples), _) => self.bilinear_in::<_, 3>(samples, u, v),
+        }
+    }
+
+    fn bilinear_in<S: Copy + Into<f64>, const CHANNELS: usize>(
+        &self,
+        samples: &[S],
+        u: f64,
+        v: f64,
+    ) -> DVec3 {
         // Centers lie at half-integers: texel i covers i..i+1. One whole turn is added to stay positive.
         let x = wrap(u) * self.width as f64 + (self.width as f64 - 0.5);
         let y = (clamp_channel(v) * self.height as f64 - 0.5).clamp(0.0, (self.height - 1) as f64);
@@ -112,26 +132,23 @@ impl Texture {
         let (columns, rows) =
             ([left % self.width, (left + 1) % self.width], [top, (top + 1).min(self.height - 1)]);
         let [upper, lower] = rows.map(|row| {
-            let [left, right] = columns.map(|column| self.samples_at(column, row));
+            let [left, right] = columns.map(|column| self.samples_at::<S, CHANNELS>(samples, column, row));
             left + (right - left) * across
         });
         (upper + (lower - upper) * down) / f64::from(self.maxval)
     }
 
     /// The three samples of a texel, not yet divided by `maxval`.
-    fn samples_at(&self, column: usize, row: usize) -> DVec3 {
-        let start = self.channels * (row * self.width + column);
-        match (&self.samples, self.channels) {
-            (Samples::Eight(samples), 1) => DVec3::splat(samples[start].into()),
-            (Samples::Sixteen(samples), 1) => DVec3::splat(samples[start].into()),
-            (Samples::Eight(samples), _) => of_three(&samples[start..start + 3]),
-            (Samples::Sixteen(samples), _) => of_three(&samples[start..start + 3]),
-        }
+    fn samples_at<S: Copy + Into<f64>, const CHANNELS: usize>(
+        &self,
+        samples: &[S],
+        column: usize,
+        row: usize,
+    ) -> DVec3 {
+        let start = CHANNELS * (row * self.width + column);
+        let texel = &samples[start..start + CHANNELS];
+        DVec3::from_array([0, 1, 2].map(|channel: usize| texel[channel.min(CHANNELS - 1)].into()))
     }
-}
-
-fn of_three<S: Copy + Into<f64>>(samples: &[S]) -> DVec3 {
-    DVec3::new(samples[0].into(), samples[1].into(), samples[2].into())
 }
 
 /// The samples of a texel, if there are so many in all.
