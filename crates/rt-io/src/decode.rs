@@ -1,13 +1,14 @@
-//! Reading whatever picture a file holds, by its first bytes: PPM and JPEG by our own codecs, PNG and TIFF through the
-//! crates of those names.
+//! Reading whatever picture a file holds, by its first bytes: PPM by our own codec, PNG and TIFF through the crates of
+//! those names, JPEG through `zune-jpeg`.
 //!
 //! The size is known and judged before anything is allocated for it: against the caller's limit, against what a file of
 //! that length can hold at all, and against the memory that there is. What a decoder would get wrong, or panic on, is
 //! refused by its name before it sees it; a panic that is left becomes an error.
 //!
 //! Samples are those of the file. PNG and TIFF give the same as netpbm's `pngtopnm` and `tifftopnm`, scaled to 8 bits
-//! where the file has fewer; JPEG the same as libjpeg-turbo's `djpeg`. A palette is looked up, alpha is dropped, colour
-//! profiles and gamma are ignored. A TIFF's orientation is obeyed.
+//! where the file has fewer; JPEG is near to what libjpeg-turbo's `djpeg` gives: within 4 of 255, but for the last column
+//! and row and pictures of at most four columns where chroma is halved (`jpeg.rs` has the measure). A palette is looked up,
+//! alpha is dropped, colour profiles and gamma are ignored. A TIFF's orientation is obeyed.
 
 mod fence;
 mod jpeg;

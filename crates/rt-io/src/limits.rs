@@ -4,9 +4,10 @@
 ///
 /// A picture takes a byte a sample, or two where `maxval > 255`, and one sample a pixel if it is grey, else three. While it
 /// is decoded there is besides it: for PPM nothing; for PNG a row, or if it is interlaced all its rows as they are in the
-/// file; for TIFF its rows as they are in the file, and again if it is turned upright; for JPEG a byte a sample of each
-/// component, and for a progressive one two more. Except for PPM the bytes of the file are held as well, and those of a
-/// TIFF with a palette twice. Where the system has not so much, there is an error.
+/// file; for TIFF its rows as they are in the file, and again if it is turned upright; for JPEG some rows,
+/// and for a progressive one two bytes a sample of each component and once more the picture. Except for PPM the bytes of
+/// the file are held as well, those of a TIFF with a palette twice, and those of a JPEG up to four times, with 18 bytes
+/// more for each restart marker. Where the system has not so much, there is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// The largest `width * height`. The default is 2^28: 0.8 GB at 8 bits, 1.6 GB at 16, a third of it if grey.

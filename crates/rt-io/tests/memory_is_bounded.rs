@@ -264,14 +264,9 @@ fn whole_pictures_take_what_the_limits_say() {
     let size = [(ROWS as u16).to_be_bytes(), (COLUMNS as u16).to_be_bytes()].concat();
     for (progressive, grey) in [(false, false), (false, true), (true, false), (true, true)] {
         let bytes = black_jpeg(&size, progressive, grey);
-        let samples = if grey { 1 } else { 3 };
-        // Whole blocks are a little more.
-        let planes = samples * COLUMNS.next_multiple_of(8) * ROWS.next_multiple_of(8);
-        let coefficients = if progressive { 2 * planes } else { 0 };
-        let picture = if grey { 0 } else { 3 * PIXELS };
-        // A grey picture is its plane.
-        let kept = if grey { planes } else { picture };
-        let most = planes + coefficients.max(picture);
+        let kept = if grey { PIXELS } else { 3 * PIXELS };
+        // Two bytes a coefficient; its sizes are multiples of a block.
+        let most = if progressive { 3 * kept } else { kept };
         check(&format!("JPEG, progressive: {progressive}, grey: {grey}"), &bytes, most, kept);
     }
 

@@ -78,10 +78,18 @@ fn too_little_memory_is_an_error_that_names_file_size_and_remedy() {
     };
     // Files as long as they say, or long enough, but for the PNG full of nothing.
     let ppm = file("a.ppm", b"P6 16384 16384 255\n", 19 + (3 << 28));
-    let mut jpeg = include_bytes!("images/progressive.jpg").to_vec();
-    let frame = jpeg.windows(2).position(|window| window == [0xff, 0xc2]).unwrap();
-    jpeg[frame + 5..frame + 9].copy_from_slice(&[0x40, 0, 0x40, 0]);
-    let jpeg = file("a.jpg", &jpeg, 1 << 20);
+    // One code of one bit stands for no difference, and for the end of a block.
+    let mut jpeg = vec![0xff, 0xd8, 0xff, 0xdb, 0, 67, 0];
+    jpeg.extend([1; 64]);
+    for kind in [0x00, 0x10] {
+        jpeg.extend([0xff, 0xc4, 0, 20, kind, 1]);
+        jpeg.extend([0; 16]);
+    }
+    jpeg.extend([0xff, 0xc0, 0, 17, 8, 0x40, 0, 0x40, 0, 3, 1, 0x11, 0, 2, 0x11, 0, 3, 0x11, 0]);
+    jpeg.extend([0xff, 0xda, 0, 12, 3, 1, 0, 2, 0, 3, 0, 0, 63, 0]);
+    jpeg.resize(jpeg.len() + (3 << 20), 0);
+    jpeg.extend([0xff, 0xd9]);
+    let jpeg = file("a.jpg", &jpeg, jpeg.len() as u64);
     // Grey in one strip: width, height, bits, kind of grey, offset, rows and bytes of the strip.
     let tags = [(256, 1 << 14), (257, 1 << 14), (258, 8), (262, 1), (273, 8), (278, 1 << 14), (279, 1 << 20)];
     let mut tiff = b"II*\0\x08\0\0\0\x07\0".to_vec();
