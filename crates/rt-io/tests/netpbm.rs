@@ -297,6 +297,31 @@ fn jpeg_of_every_sampling_is_near_to_djpeg_or_refused() {
     assert_eq!((count, read), (311, 3 * 24));
 }
 
+/// Bytes that a scan lacks at its end are missed, whatever follows it, unless they make no difference.
+#[test]
+fn a_jpeg_with_a_shortened_scan_is_refused() {
+    let picture = picture(65, 49, 255, false);
+    for encoder in ["cjpeg -quality 90", "cjpeg -quality 90 -restart 3B", "cjpeg -quality 90 -progressive"] {
+        let Some(file) = netpbm(encoder, &encode(&picture, Encoding::Raw)) else { return };
+        let whole = decode_image(&file, &Limits::default()).unwrap();
+        let mut refused = 0;
+        let first = file.windows(2).position(|pair| pair == [0xff, 0xda]).unwrap() + 2;
+        for end in first..file.len() - 1 {
+            if file[end] != 0xff || file[end + 1] == 0 || file[end + 1] == 0xda {
+                continue;
+            }
+            for missing in 1..=12 {
+                let cut = [&file[..end - missing], &file[end..]].concat();
+                match decode_image(&cut, &Limits::default()) {
+                    Ok(decoded) => assert!(decoded == whole, "{encoder}: {missing} bytes before {end}"),
+                    Err(_) => refused += 1,
+                }
+            }
+        }
+        assert!(refused > 10, "{encoder}: {refused}");
+    }
+}
+
 /// The densest files that there are, of one colour, are not taken for broken ones.
 #[test]
 fn the_bound_on_pixels_per_byte_refuses_no_whole_file() {

@@ -50,8 +50,8 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
         let plain = Walk::new(bytes, 0, limits)?;
         return Err(if run(&plain.file, &mut samples).is_ok() { ENDS } else { broken(message) });
     }
-    // Bits that refine coefficients in a run of blocks without new ones have no code that ones could break. If the last of
-    // them are missing, it makes a difference that the decoder fills up with zeros here.
+    // Bits that refine coefficients have no code that ones could break. If the last of them are missing, it makes a
+    // difference that the decoder fills up with zeros here.
     if frame.refines {
         let plain = Walk::new(bytes, 0, limits)?;
         let mut filled_up = frame.size.filled(samples.len(), 0)?;
@@ -93,7 +93,7 @@ struct Component {
 /// What the frame header says.
 struct Frame {
     progressive: bool,
-    /// Whether a scan refines coefficients other than the first of a block.
+    /// Whether a scan refines coefficients.
     refines: bool,
     size: Size,
     components: Vec<Component>,
@@ -187,7 +187,7 @@ impl Walk {
     /// Takes over a scan, its header and its data; `at` is behind the header.
     fn scan(&mut self, whole: &[u8], header: &[u8], bytes: &[u8], at: &mut usize) -> Result<(), DecodeError> {
         let frame = self.frame.as_mut().ok_or_else(|| broken("a scan before the frame header"))?;
-        let layout = frame.begin_scan(header)?;
+        let mut units = frame.begin_scan(header)?;
         if self.scans == 0 {
             let ids_are_rgb = frame.components.iter().map(|component| component.id).eq(*b"RGB");
             // libjpeg's rule, for files that leave it open.
@@ -206,7 +206,6 @@ impl Walk {
                 self.file.push(transform);
             }
         }
-        let mut units = layout.units;
         let begin = self.file.len();
         self.file.extend(whole);
         // In the first scan of a progressive file the decoder wants the marker right behind the data: it gets that scan
@@ -217,13 +216,7 @@ impl Walk {
         loop {
             let interval = data(bytes, *at).ok_or(ENDS)?;
             *at += interval.len();
-            // Every block but those in a run takes a bit or more.
-            let restarts = if self.restart_interval == 0 { units } else { self.restart_interval.min(units) };
-            let stuffing = interval.windows(2).filter(|pair| *pair == [0xff, 0]).count();
-            if layout.bits_a_unit * restarts > 8 * (interval.len() - stuffing) {
-                return Err(ENDS);
-            }
-            units -= restarts;
+            units -= if self.restart_interval == 0 { units } else { self.restart_interval.min(units) };
             let room = self.file.try_reserve(2 * interval.len() + 2 * self.ones + 2);
             room.map_err(|error| DecodeError::Read(error.into()))?;
             self.file.extend(interval);
@@ -267,14 +260,6 @@ fn data(bytes: &[u8], at: usize) -> Option<&[u8]> {
     let rest = bytes.get(at..)?;
     let length = rest.windows(2).position(|pair| pair[0] == 0xff && pair[1] != 0)?;
     Some(&rest[..length])
-}
-
-/// How much a scan has to hold.
-struct Layout {
-    /// Interleaved units, or blocks if there is one component.
-    units: usize,
-    /// The fewest bits of each.
-    bits_a_unit: usize,
 }
 
 impl Frame {
@@ -335,8 +320,9 @@ impl Frame {
     }
 
     /// Reads a scan header (B.2.3) and notes what the scan sends. Each bit is sent once, from the highest down
-    /// (G.1.1.1.2), so that scans are few.
-    fn begin_scan(&mut self, header: &[u8]) -> Result<Layout, DecodeError> {
+    /// (G.1.1.1.2), so that scans are few. Gives its
+    /// number of interleaved units, or of blocks if there is one component.
+    fn begin_scan(&mut self, header: &[u8]) -> Result<usize, DecodeError> {
         let Some((&count, rest)) = header.split_first() else { return Err(broken("a scan header")) };
         let (selectors, band) =
             rest.split_at_checked(2 * usize::from(count)).ok_or(broken("a scan header"))?;
@@ -353,11 +339,9 @@ impl Frame {
         if high > 0 && high != low + 1 || first > 0 && count != 1 {
             return Err(broken("a scan out of turn"));
         }
-        let mut blocks = 0;
         for selector in selectors.as_chunks::<2>().0 {
             let component = self.components.iter_mut().find(|component| component.id == selector[0]);
             let component = component.ok_or_else(|| broken("a scan of a component that is not there"))?;
-            blocks += component.across * component.down;
             for sent in &mut component.sent[usize::from(first)..=usize::from(last)] {
                 if *sent != (high > 0).then_some(high) {
                     return Err(broken("a scan out of turn"));
@@ -365,7 +349,7 @@ impl Frame {
                 *sent = Some(low);
             }
         }
-        self.refines |= first > 0 && high > 0;
+        self.refines |= high > 0;
         let mut units = self.units();
         if let [id, _] = *selectors {
             let one =
@@ -373,8 +357,7 @@ impl Frame {
             let (x, y) = one.unwrap_or((1, 1));
             let (width, height) = (self.size.width as usize, self.size.height as usize);
             units = (width * x).div_ceil(8 * self.across) * (height * y).div_ceil(8 * self.down);
-            blocks = 1;
         }
-        Ok(Layout { units, bits_a_unit: if first == 0 { blocks } else { 0 } })
+        Ok(units)
     }
 }
