@@ -38,6 +38,7 @@ pub fn clamp(color: DVec3) -> DVec3 {
 /// // the double 0.7 lies below 7/10, and 255 times it below 178.5, to which the product of doubles rounds
 /// assert_eq!((to_sample(0.7, 255), 255.0 * 0.7), (178, 178.5));
 /// ```
+#[inline]
 pub fn to_sample(c: f64, maxval: u16) -> u16 {
     let c = clamp_channel(c);
     // Two roundings, neither of which passes a half or a whole number: they may lift a sample just below a half onto the
@@ -52,6 +53,7 @@ pub fn to_sample(c: f64, maxval: u16) -> u16 {
 }
 
 /// [`to_sample`] in integers, for a channel in `0..=1`.
+#[inline(never)]
 fn integer_sample(c: f64, maxval: u16) -> u16 {
     // c = significand 2^(-63 - shift), the significand's top bit being set, and
     // 4 maxval significand 2^-64 is 2 maxval c 2^shift. ⌊x + ½⌋ = ⌊(⌊2x⌋ + 1) / 2⌋: cutting bits off changes no floor.
