@@ -3,19 +3,19 @@
 //! Four stages, each one decides what it can and leaves the rest to the next; all give the same bits.
 //!
 //! 1. [`regular`]: the inverse in double-double. Nearly every matrix is well scaled and regular, and ends here.
-//! 2. [`narrow`]: entries of like magnitude as integers, exact in 256 bits. Here most singular matrices end.
+//! 2. [`fixed`]: entries of like magnitude as exact fixed-point numbers. Here most singular matrices end.
 //! 3. [`graded`]: these two again, after rows and columns were brought to like size.
 //! 4. [`integers`]: exact for every finite matrix.
 //!
 //! [`truncated`] is for the other function, which takes small singular values as zero.
 
+mod fixed;
 mod graded;
 mod integers;
-mod narrow;
 mod regular;
 mod truncated;
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use crate::fma_dispatch;
 
@@ -88,9 +88,59 @@ fn undecided(m: &DMat3) -> PseudoInverse {
     if !m.is_finite() {
         return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
     }
-    narrow::pseudo_inverse(m)
+    fixed::pseudo_inverse(m)
         .or_else(|| graded::inverse(m).map(|matrix| PseudoInverse { matrix, rank: 3 }))
         .unwrap_or_else(|| integers::pseudo_inverse(m))
+}
+
+/// Returns the row sums of the pseudo-inverse of `m`: the least-squares solution of smallest length of `m x = (1, 1, 1)`.
+///
+/// Each is correctly rounded, for all finite matrices, with zeros and the ends of the range as for [`pseudo_inverse`]. A matrix
+/// with an infinite or NaN entry gives NaN. The three sums of a matrix have one denominator, so each is one exact quotient.
+///
+/// ```
+/// use glam::{DMat3, DVec3};
+/// use rt_math::pseudo_inverse_row_sums;
+///
+/// let axes = DMat3::from_diagonal(DVec3::new(2.0, 4.0, 0.0));
+/// assert_eq!(pseudo_inverse_row_sums(axes), DVec3::new(0.5, 0.25, 0.0));
+/// ```
+#[must_use]
+#[inline]
+pub fn pseudo_inverse_row_sums(m: DMat3) -> DVec3 {
+    let [a, b, c, d, e, f, g, h, i] = m.to_cols_array();
+    sums_staged(a, b, c, d, e, f, g, h, i)
+}
+
+fma_dispatch! {
+    #[expect(clippy::too_many_arguments, reason = "nine numbers in registers; from memory just written they come late")]
+    fn sums_staged(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 = sums_kernel;
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn sums_kernel<const FMA: bool>(
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    h: f64,
+    i: f64,
+) -> DVec3 {
+    let m = [a, b, c, d, e, f, g, h, i];
+    regular::row_sums::<FMA>(&m).unwrap_or_else(|| undecided_sums(&DMat3::from_cols_array(&m)))
+}
+
+#[cold]
+#[inline(never)]
+fn undecided_sums(m: &DMat3) -> DVec3 {
+    if !m.is_finite() {
+        return DVec3::NAN;
+    }
+    fixed::row_sums(m).unwrap_or_else(|| integers::row_sums(m))
 }
 
 /// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.
@@ -156,7 +206,7 @@ mod tests {
                 let fused = regular(regular::inverse::<true>(&entries));
                 let stages = [
                     regular(regular::inverse::<false>(&entries)),
-                    narrow::pseudo_inverse(&m),
+                    fixed::pseudo_inverse(&m),
                     regular(graded::inverse(&m)),
                     Some(integers::pseudo_inverse(&m)),
                 ];
@@ -167,7 +217,7 @@ mod tests {
                 assert_eq!(bits(&pseudo_inverse(m)), expected, "{name}: {entries:?}");
                 of_class[stages.iter().position(Option::is_some).expect("the last")] += 1;
             }
-            println!("{name:24} double-double, 256 bits, scaled, integers: {of_class:?}");
+            println!("{name:24} double-double, fixed, scaled, integers: {of_class:?}");
             decided.iter_mut().zip(of_class).for_each(|(sum, count)| *sum += count);
         }
         assert!(decided.iter().all(|&count| count > 500), "{decided:?}");
@@ -180,9 +230,9 @@ mod tests {
     #[test]
     fn ends_of_the_exponent_range_are_inverted() {
         for x in [f64::MAX, 1e200, 1.0, 1e-200, 1e-300] {
-            let answer = pseudo_inverse(DMat3::from_diagonal(glam::DVec3::splat(x)));
+            let answer = pseudo_inverse(DMat3::from_diagonal(DVec3::splat(x)));
             assert_eq!(answer.rank, 3, "{x}");
-            assert_eq!(answer.matrix, DMat3::from_diagonal(glam::DVec3::splat(1.0 / x)), "{x}");
+            assert_eq!(answer.matrix, DMat3::from_diagonal(DVec3::splat(1.0 / x)), "{x}");
         }
     }
 }

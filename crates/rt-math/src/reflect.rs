@@ -1,14 +1,15 @@
 //! Reflection of a vector, correctly rounded.
 //!
 //! Each component `v_i - k n_i`, with `k = 2 (v·n) / (n·n)`, is computed in double-double: both dot products with the exact
-//! errors of their terms, the quotient with its remainder, the difference with its error. What then lies too near a midpoint
-//! of two doubles, or cancels, or is out of range, is left to exact integers. A filter in plain doubles before that
+//! errors of their terms, the quotient with its remainder, the difference with its error. The components that then lie too
+//! near a midpoint of two doubles, or cancel, or are out of range, are quotients of exact fixed-point numbers, and of
+//! integers of any size where the vectors have components of very different size. A filter in plain doubles before that
 //! would decide nothing, since it is the value that is asked for and not a verdict.
 
 use glam::DVec3;
 
 use crate::exact::stage::{Stage, decided};
-use crate::exact::{Dyadic, power_of_two, remainder, two_diff, two_prod, two_sum};
+use crate::exact::{Dyadic, Fixed, Window, power_of_two, remainder, two_diff, two_prod, two_sum};
 use crate::fma_dispatch;
 
 /// Returns `incident` mirrored in the plane through the origin with the given normal: `v - 2 (v·n) / (n·n) n`.
@@ -44,12 +45,14 @@ const ERROR_FLOOR: f64 = power_of_two(-800);
 #[inline(always)]
 fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> DVec3 {
     let (v, n) = (DVec3::new(vx, vy, vz), DVec3::new(nx, ny, nz));
-    let (reflected, certain) = reflect_if_certain::<FMA>(v, n);
-    if certain {
+    let (lower, upper, in_range) = bounds::<FMA>(v, n);
+    if in_range & all_equal(&lower, &upper) {
         decided(Stage::DoubleDouble);
-        return reflected;
+        return DVec3::from_array(upper);
     }
-    rest(v, n)
+    // What is certain is not computed again.
+    let lower = if in_range { lower } else { [f64::NAN; 3] };
+    rest(v, n, &lower, &upper)
 }
 
 /// Returns what [`reflect`] returns, and whether it is that: `false` where double-double does not decide the rounding.
@@ -68,6 +71,19 @@ fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64)
 #[inline(always)]
 #[must_use]
 pub fn reflect_if_certain<const FMA: bool>(incident: DVec3, normal: DVec3) -> (DVec3, bool) {
+    let (lower, upper, in_range) = bounds::<FMA>(incident, normal);
+    (DVec3::from_array(upper), in_range & all_equal(&lower, &upper))
+}
+
+#[inline(always)]
+fn all_equal(lower: &[f64; 3], upper: &[f64; 3]) -> bool {
+    (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2])
+}
+
+/// A lower and an upper bound of each component, rounded: where they are equal, so is the component. That holds if the last
+/// value says so: the vectors are in the range of double-double.
+#[inline(always)]
+fn bounds<const FMA: bool>(incident: DVec3, normal: DVec3) -> ([f64; 3], [f64; 3], bool) {
     let (v, n) = (incident.to_array(), normal.to_array());
     let [(vn, vn_low, size), (nn, nn_low, _)] = [dot::<FMA>(v, n), dot::<FMA>(n, n)];
     // NaN and infinity fail these comparisons
@@ -88,8 +104,7 @@ pub fn reflect_if_certain<const FMA: bool>(incident: DVec3, normal: DVec3) -> (D
         lower[i] = x + (x_low - error);
         upper[i] = x + (x_low + error);
     }
-    let certain = (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2]);
-    (DVec3::from_array(upper), in_range & certain)
+    (lower, upper, in_range)
 }
 
 /// The dot product as a double and a correction, and the sum of the magnitudes of its terms.
@@ -103,29 +118,50 @@ fn dot<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
     (sum, (xy_low + sum_low) + ((x_low + y_low) + z_low), (x.abs() + y.abs()) + z.abs())
 }
 
-/// All that double-double does not decide.
+/// All that double-double does not decide; components whose bounds are equal are known.
 #[cold]
 #[inline(never)]
-fn rest(v: DVec3, n: DVec3) -> DVec3 {
+fn rest(v: DVec3, n: DVec3, lower: &[f64; 3], upper: &[f64; 3]) -> DVec3 {
     if !(v.is_finite() && n.is_finite()) || n == DVec3::ZERO {
         return DVec3::NAN;
     }
     if (0..3).all(|i| v[i] == 0.0 || n[i] == 0.0) {
         return v + DVec3::ZERO; // perpendicular, term by term: unchanged, but for the sign of zeros
     }
-    integers(v, n)
+    fixed::<1, 2, 3>(v, n, lower, upper)
+        .or_else(|| fixed::<2, 4, 6>(v, n, lower, upper))
+        .unwrap_or_else(|| integers(v, n))
+}
+
+/// The components that are not known, in fixed-point numbers: vectors of `N` limbs, dot products of `S = 2 N`, numerators of
+/// `V = 3 N`.
+#[inline(always)]
+fn fixed<const N: usize, const S: usize, const V: usize>(
+    v: DVec3,
+    n: DVec3,
+    lower: &[f64; 3],
+    upper: &[f64; 3],
+) -> Option<DVec3> {
+    let (v_window, n_window) = (Window::<N>::around(&v.to_array())?, Window::<N>::around(&n.to_array())?);
+    decided(Stage::Fixed);
+    let (v, n) = (v.to_array().map(|x| v_window.fixed(x)), n.to_array().map(|x| n_window.fixed(x)));
+    let (vn, nn) = (Fixed::<S>::dot(&v, &n), Fixed::<S>::dot(&n, &n));
+    let twice = vn + vn;
+    let mut image = *upper;
+    for i in 0..3 {
+        if lower[i] != upper[i] {
+            let numerator = Fixed::<V>::product(&nn, &v[i]) - Fixed::product(&twice, &n[i]);
+            image[i] = Fixed::quotient(&numerator, &nn, v_window.exponent());
+        }
+    }
+    Some(DVec3::from_array(image))
 }
 
 /// The last stage, exact for all finite vectors; `n` is not zero.
 fn integers(v: DVec3, n: DVec3) -> DVec3 {
     decided(Stage::Integers);
-    // v_i (n·n) - 2 (v·n) n_i lies below 2^t and is a multiple of 2^s; two limbs more for the rounding
-    let near_one = |x: f64| x == 0.0 || (power_of_two(-64)..power_of_two(64)).contains(&x.abs());
-    if v.to_array().into_iter().chain(n.to_array()).all(near_one) {
-        sized::<16>(v, n) // t = 196, s = -348
-    } else {
-        sized::<104>(v, n) // t = 3076, s = -3222
-    }
+    // v_i (n·n) - 2 (v·n) n_i lies below 2^3076 and is a multiple of 2^-3222; two limbs more for the rounding
+    sized::<104>(v, n)
 }
 
 #[inline(never)]
@@ -164,10 +200,10 @@ mod tests {
         found
     }
 
-    /// Checks a class of pairs; returns how often double-double and integers decided.
-    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 2]) -> [usize; 2] {
+    /// Checks a class of pairs; returns how often double-double, fixed-point numbers and integers decided.
+    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 2]) -> [usize; 3] {
         let mut rng = Rng::new(seed);
-        let mut total = [0; 2];
+        let mut total = [0; 3];
         for _ in 0..cases(1_000_000) {
             let [v, n] = vectors(&mut rng);
             if n == [0.0; 3] || !v.iter().chain(&n).all(|x| x.is_finite()) {
@@ -175,8 +211,8 @@ mod tests {
             }
             decisions();
             check(v, n);
-            let [_, double_double, integers] = decisions();
-            total = [total[0] + double_double, total[1] + integers];
+            let [_, double_double, fixed, integers] = decisions();
+            total = [total[0] + double_double, total[1] + fixed, total[2] + integers];
         }
         total
     }
@@ -187,28 +223,28 @@ mod tests {
 
     #[test]
     fn benign_vectors_are_decided_by_double_double() {
-        let [double_double, integers] =
+        let [double_double, fixed, integers] =
             check_class(30, |rng| [vector(rng, -4..2), [0; 3].map(|_| rng.with_exponent(-4..2))]);
-        assert!(double_double > 50 * integers, "{double_double} {integers}");
+        assert!(double_double > 50 * (fixed + integers), "{double_double} {fixed} {integers}");
     }
 
     #[test]
     fn vectors_of_any_doubles_are_reflected_correctly() {
-        let [double_double, integers] =
+        let [double_double, _, integers] =
             check_class(31, |rng| [[0; 3].map(|_| rng.finite()), [0; 3].map(|_| rng.finite())]);
         assert!(double_double > 100 && integers > 10_000, "{double_double} {integers}");
     }
 
     #[test]
     fn a_component_that_nearly_vanishes_is_correct() {
-        let [_, integers] = check_class(32, |rng| {
+        let [_, fixed, _] = check_class(32, |rng| {
             // a vector is mirrored twice, and then into the axes' directions: r is near (0, 0, z)
             let mut normal = vector(rng, -4..4);
             normal[0] += 1.0;
             let image = reflect(DVec3::new(0.0, 0.0, rng.with_exponent(-3..3)), normal.into());
             [image.to_array(), normal]
         });
-        assert!(integers > 1_000, "{integers}");
+        assert!(fixed > 1_000, "{fixed}");
     }
 
     #[test]
@@ -224,7 +260,7 @@ mod tests {
     #[test]
     fn exact_midpoints_round_to_even() {
         let mut ties = 0;
-        let [_, integers] = check_class(34, |rng| {
+        let [_, fixed, _] = check_class(34, |rng| {
             // n = (1, 2, 2), v·n = 9 j: the image is v - 2 j n, with 54 bits and more
             let j = i64::try_from(rng.bits() >> 12).expect("52 bits") | 1 << 51;
             let y = i64::try_from(rng.bits() >> 11).expect("53 bits");
@@ -238,7 +274,7 @@ mod tests {
             let normal_scale = 2f64.powi(rng.integer(-500..500));
             [v, [1.0, 2.0, 2.0].map(|x| x * normal_scale)]
         });
-        assert!(ties > 500 && integers > 1_000, "{ties} {integers}");
+        assert!(ties > 500 && fixed > 1_000, "{ties} {fixed}");
     }
 
     #[test]

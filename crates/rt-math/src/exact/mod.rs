@@ -7,7 +7,9 @@
 //! 2. *double-double*: [`DoubleDouble`], about 106 bits, made of the error-free transformations [`two_sum`],
 //!    [`two_diff`] and [`two_prod`]; a value so computed is accepted when [`round_if_certain`] shows that its error
 //!    cannot change the rounding;
-//! 3. *integers*: [`Dyadic`], exact for every finite input, over- and underflow included; cold.
+//! 3. *fixed-point numbers*: [`Fixed`], exact for numbers whose exponents lie in a [`Window`]; first where they cost less
+//!    than double-double;
+//! 4. *integers*: [`Dyadic`], exact for every finite input, over- and underflow included; cold.
 //!
 //! Nothing here allocates, and every loop is bounded by the number of limbs.
 //!
@@ -30,9 +32,12 @@
 mod dot;
 mod double_double;
 mod dyadic;
+mod enclosure;
 mod error_free;
+mod fixed;
 mod fma;
 mod round;
+mod scaling;
 pub(crate) mod stage;
 
 pub use crate::reflect::reflect_if_certain;
@@ -40,12 +45,7 @@ pub use dot::{difference_dot_sign, dot_sign, dot_with_error};
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
 pub use error_free::{fast_two_sum, remainder, two_diff, two_prod, two_sum};
+pub use fixed::{Fixed, MOST_LIMBS, Window};
 pub use fma::has_fma;
 pub use round::round_if_certain;
-
-/// 2ᵏ, for `k` from -1022 to 1023.
-#[expect(clippy::cast_sign_loss, reason = "the biased exponent of a normal double is positive")]
-pub(crate) const fn power_of_two(k: i32) -> f64 {
-    assert!(-1022 <= k && k <= 1023, "outside the normal range");
-    f64::from_bits(((1023 + k) as u64) << 52)
-}
+pub(crate) use scaling::{mantissa_and_exponent, power_of_two};

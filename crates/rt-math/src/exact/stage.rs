@@ -7,7 +7,9 @@ pub(crate) enum Stage {
     Filter,
     /// Double-double.
     DoubleDouble,
-    /// Exact integers.
+    /// Fixed-point numbers within a window.
+    Fixed,
+    /// Integers of any size.
     Integers,
 }
 
@@ -28,11 +30,11 @@ mod counter {
     use core::cell::RefCell;
 
     thread_local! {
-        pub(super) static COUNTS: RefCell<[usize; 3]> = const { RefCell::new([0; 3]) };
+        pub(super) static COUNTS: RefCell<[usize; 4]> = const { RefCell::new([0; 4]) };
     }
 
-    /// The decisions of filter, double-double and integers since the last call on this thread.
-    pub(crate) fn decisions() -> [usize; 3] {
+    /// The decisions of filter, double-double, fixed-point numbers and integers since the last call on this thread.
+    pub(crate) fn decisions() -> [usize; 4] {
         COUNTS.take()
     }
 }

@@ -5,7 +5,7 @@
 
 use glam::DMat3;
 
-use super::{narrow, power_of_two, regular};
+use super::{fixed, power_of_two, regular};
 
 /// The correctly rounded inverse of a finite matrix, if one of the first two stages can find it for the scaled matrix,
 /// and neither that nor the answer has a subnormal entry.
@@ -31,7 +31,7 @@ pub(super) fn inverse(m: &DMat3) -> Option<DMat3> {
         scaled[k] = shifted(entries[k], -rows[k % 3] - columns[k / 3])?;
     }
     let regular =
-        || narrow::pseudo_inverse(&DMat3::from_cols_array(&scaled)).filter(|answer| answer.rank == 3);
+        || fixed::pseudo_inverse(&DMat3::from_cols_array(&scaled)).filter(|answer| answer.rank == 3);
     let inverse = regular::inverse::<false>(&scaled).or_else(|| Some(regular()?.matrix))?.to_cols_array();
     let mut answer = [0.0; 9];
     for k in 0..9 {
@@ -50,7 +50,7 @@ fn exponent(x: f64) -> i32 {
 }
 
 /// `x` times `2^shift` if that is zero, a normal double, which is exact then, or infinite.
-pub(super) fn shifted(x: f64, shift: i32) -> Option<f64> {
+fn shifted(x: f64, shift: i32) -> Option<f64> {
     const LIMIT: i32 = 2 * 1022;
     if x == 0.0 {
         return Some(x);

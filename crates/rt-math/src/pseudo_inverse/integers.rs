@@ -22,26 +22,45 @@ use crate::exact::Dyadic;
 #[cold]
 #[inline(never)]
 pub(super) fn pseudo_inverse(m: &DMat3) -> PseudoInverse {
-    // Degree 4 in entries of w bits takes (4 w + 6) / 64 + 2 limbs and two more for the rounding: w = 206 fits in 16
-    // limbs, and the 2098 bits from one end of the doubles to the other fit in 136.
+    if is_narrow(m) { pseudo_inverse_sized::<16>(m) } else { pseudo_inverse_sized::<136>(m) }
+}
+
+/// The correctly rounded row sums of the pseudo-inverse of a finite matrix.
+#[cold]
+#[inline(never)]
+pub(super) fn row_sums(m: &DMat3) -> DVec3 {
+    if is_narrow(m) { row_sums_sized::<16>(m) } else { row_sums_sized::<136>(m) }
+}
+
+/// Whether 16 limbs are enough. Degree 4 in entries of w bits takes `(4 w + 8) / 64 + 2` limbs, sums of rows included, and two
+/// more for the rounding: w = 206 fits in 16 limbs, and the 2098 bits from one end of the doubles to the other fit in 136.
+fn is_narrow(m: &DMat3) -> bool {
     const NARROW: u64 = 206 - 53;
     let exponents = m.to_cols_array().map(|x| (x.to_bits() >> 52 & 0x7ff).max(1));
     let used = || exponents.iter().zip(m.to_cols_array()).filter(|(_, x)| *x != 0.0).map(|(e, _)| *e);
-    if used().max().unwrap_or(0) - used().min().unwrap_or(0) <= NARROW {
-        limbs::<16>(m)
-    } else {
-        limbs::<136>(m)
-    }
+    used().max().unwrap_or(0) - used().min().unwrap_or(0) <= NARROW
 }
 
 type Vector<const LIMBS: usize> = [Dyadic<LIMBS>; 3];
 
-fn limbs<const LIMBS: usize>(m: &DMat3) -> PseudoInverse {
+fn pseudo_inverse_sized<const LIMBS: usize>(m: &DMat3) -> PseudoInverse {
+    let (rows, denominator, rank) = quotients::<LIMBS>(m);
+    let row = |k: usize| DVec3::from_array([0, 1, 2].map(|j| divided(&rows[k][j], &denominator)));
+    PseudoInverse { matrix: DMat3::from_cols(row(0), row(1), row(2)).transpose(), rank }
+}
+
+fn row_sums_sized<const LIMBS: usize>(m: &DMat3) -> DVec3 {
+    let (rows, denominator, _) = quotients::<LIMBS>(m);
+    DVec3::from_array(rows.map(|[x, y, z]| divided(&(x + y + z), &denominator)))
+}
+
+/// The rows of the pseudo-inverse times a common denominator, and the rank; all zero for rank 0.
+fn quotients<const LIMBS: usize>(m: &DMat3) -> ([Vector<LIMBS>; 3], Dyadic<LIMBS>, usize) {
     let a = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(Dyadic::<LIMBS>::from_f64));
     let c = [cross(&a[1], &a[2]), cross(&a[2], &a[0]), cross(&a[0], &a[1])];
     let determinant = dot(&a[0], &c[0]);
     if determinant.sign() != Ordering::Equal {
-        return PseudoInverse { matrix: divided(&c, &determinant), rank: 3 };
+        return (c, determinant, 3);
     }
     let minors = dot(&c[0], &c[0]) + dot(&c[1], &c[1]) + dot(&c[2], &c[2]);
     if minors.sign() != Ordering::Equal {
@@ -49,13 +68,16 @@ fn limbs<const LIMBS: usize>(m: &DMat3) -> PseudoInverse {
             let (first, second) = (cross(&c[i], &a[j]), cross(&c[j], &a[i]));
             [0, 1, 2].map(|k| &first[k] - &second[k])
         });
-        return PseudoInverse { matrix: divided(&b, &minors), rank: 2 };
+        return (b, minors, 2);
     }
     let squares = dot(&a[0], &a[0]) + dot(&a[1], &a[1]) + dot(&a[2], &a[2]);
-    if squares.sign() != Ordering::Equal {
-        return PseudoInverse { matrix: divided(&a, &squares), rank: 1 };
-    }
-    PseudoInverse { matrix: DMat3::ZERO, rank: 0 }
+    let rank = usize::from(squares.sign() != Ordering::Equal);
+    (a, squares, rank)
+}
+
+/// The correctly rounded quotient; zero by zero is +0.0 too.
+fn divided<const LIMBS: usize>(numerator: &Dyadic<LIMBS>, denominator: &Dyadic<LIMBS>) -> f64 {
+    if numerator.sign() == Ordering::Equal { 0.0 } else { Dyadic::quotient(numerator, denominator) }
 }
 
 fn cross<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Vector<LIMBS> {
@@ -64,10 +86,4 @@ fn cross<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Vector<LIM
 
 fn dot<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Dyadic<LIMBS> {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-/// The matrix of the given rows over `denominator`, each entry correctly rounded; an exact zero is +0.0.
-fn divided<const LIMBS: usize>(rows: &[Vector<LIMBS>; 3], denominator: &Dyadic<LIMBS>) -> DMat3 {
-    let row = |k: usize| DVec3::from_array([0, 1, 2].map(|j| Dyadic::quotient(&rows[k][j], denominator)));
-    DMat3::from_cols(row(0), row(1), row(2)).transpose()
 }

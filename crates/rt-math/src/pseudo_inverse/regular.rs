@@ -3,7 +3,7 @@
 //! Cofactors and determinant are kept as unevaluated sums of two doubles with running error bounds; the rounding test
 //! decides each entry. Symbols and the proof of every constant: `docs/numerics.md`, section 3.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use crate::exact::{two_diff, two_prod, two_sum};
 
@@ -18,8 +18,16 @@ const ETA_LIMIT: f64 = 1.0 / 8.0;
 const SMALLEST: f64 = 1.0 / LARGEST;
 const LARGEST: f64 = f64::from_bits((1023 + 100) << 52); // 2^100
 
+/// The adjugate of a matrix, column by column as in the inverse: each entry is `h + l` within `u b`, and `|l| <= b`.
+struct Adjugate {
+    h: [f64; 9],
+    l: [f64; 9],
+    b: [f64; 9],
+}
+
+/// The adjugate and the reciprocal of the determinant, unless an entry is out of range or the determinant may be zero.
 #[inline(always)]
-pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
+fn parts<const FMA: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
     if !m.iter().fold(true, |all, &x| all & ((x == 0.0) | ((x.abs() >= SMALLEST) & (x.abs() <= LARGEST)))) {
         return None;
     }
@@ -53,7 +61,12 @@ pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
     let bound =
         1.125 * U * (sum([a[0] * b[0], a[1] * b[1], a[2] * b[2]]) + sum(v) + sum(x) + sum(y) + low.abs());
 
-    let reciprocal = Reciprocal::<FMA>::new(s, low, bound)?;
+    Some((Adjugate { h, l, b }, Reciprocal::new(s, low, bound)?))
+}
+
+#[inline(always)]
+pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
+    let (Adjugate { h, l, b }, reciprocal) = parts::<FMA>(m)?;
     let mut inverse = [0.0; 9];
     let mut certain = true;
     for k in 0..9 {
@@ -62,6 +75,27 @@ pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
         inverse[k] = upper;
     }
     certain.then(|| DMat3::from_cols_array(&inverse))
+}
+
+/// The sums of the rows of the inverse.
+#[inline(always)]
+pub(super) fn row_sums<const FMA: bool>(m: &[f64; 9]) -> Option<DVec3> {
+    let (Adjugate { h, l, b }, reciprocal) = parts::<FMA>(m)?;
+    let mut sums = [0.0; 3];
+    let mut certain = true;
+    for k in 0..3 {
+        let (sum, first_error) = two_sum(h[k], h[k + 3]);
+        let (sum, second_error) = two_sum(sum, h[k + 6]);
+        let errors = first_error + second_error;
+        let low = errors + ((l[k] + l[k + 3]) + l[k + 6]);
+        // Four additions of terms that are no larger than the sum of these magnitudes.
+        let terms =
+            (first_error.abs() + second_error.abs()) + ((l[k].abs() + l[k + 3].abs()) + l[k + 6].abs());
+        let (lower, upper) = reciprocal.times(sum, low, 4.0 * terms + 1.125 * ((b[k] + b[k + 3]) + b[k + 6]));
+        certain &= lower == upper;
+        sums[k] = upper;
+    }
+    certain.then(|| DVec3::from_array(sums))
 }
 
 /// The reciprocal of a number that is not zero, `r (1 + tau + tau^2)` with a relative error, to divide by it.

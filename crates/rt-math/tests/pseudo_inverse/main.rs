@@ -7,7 +7,7 @@ mod oracle;
 
 use glam::DMat3;
 use matrices::{CLASSES, Random};
-use rt_math::{PseudoInverse, pseudo_inverse};
+use rt_math::{PseudoInverse, pseudo_inverse, pseudo_inverse_row_sums};
 
 /// Matrices per class: 10^4, or 10^6 with `RT_LONG` in the environment.
 fn cases() -> usize {
@@ -59,6 +59,23 @@ fn for_every_class(cases: usize, check: impl Fn(&str, &DMat3) + Sync) {
 #[test]
 fn rank_is_exact_and_every_entry_correctly_rounded() {
     for_every_class(cases(), check);
+}
+
+#[test]
+fn row_sums_are_correctly_rounded() {
+    for_every_class(cases() / 4, |name, m| {
+        let (found, exact) = (pseudo_inverse_row_sums(*m), oracle::pseudo_inverse(m));
+        for i in 0..3 {
+            let expected = exact.rounded_row_sum(i);
+            assert!(
+                found[i].to_bits() == expected.to_bits(),
+                "{name}: sum {i} is {:e}, not {expected:e}, for {:?}",
+                found[i],
+                m.to_cols_array()
+            );
+        }
+    });
+    assert!(pseudo_inverse_row_sums(DMat3::NAN).is_nan());
 }
 
 #[test]

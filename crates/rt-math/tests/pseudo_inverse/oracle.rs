@@ -42,6 +42,12 @@ impl Exact {
         quotient(&self.numerator[i][j], &self.denominator, self.exponent)
     }
 
+    /// The sum of row `i`, rounded likewise.
+    pub(crate) fn rounded_row_sum(&self, i: usize) -> f64 {
+        let sum = self.numerator[i].iter().fold(IBig::ZERO, |sum, entry| sum + entry);
+        quotient(&sum, &self.denominator, self.exponent)
+    }
+
     /// Asserts the four conditions that define the pseudo-inverse, without any rounding.
     pub(crate) fn assert_penrose(&self, m: &DMat3) {
         let (a, _) = integers(m);

@@ -1,0 +1,654 @@
+//! Exact integers of fixed size for doubles whose exponents lie in a window: the rung between double-double and [`Dyadic`].
+//!
+//! Numbers that people have (decimals, grid coordinates, what a program computed at one scale) are multiples of one power of
+//! two and not much larger than it. A [`Window`] finds that power and turns each double into a [`Fixed`] number, an integer
+//! in two's complement of a size that the compiler knows: no loop whose length depends on values, no memory but
+//! registers, no error bound to prove. Each product takes the sum of its factors' limbs; a polynomial of degree `k` in
+//! numbers of one limb takes `k` limbs, its terms' sum included, if the window leaves a few bits.
+//!
+//! Quotients and roots are correctly rounded in double-double, from the leading 106 bits, and by [`Dyadic`] where these do not
+//! decide: next to a midpoint of two doubles, or at the ends of the range.
+
+use core::cmp::Ordering;
+use core::ops::{Add, Neg, Sub};
+
+use super::double_double::DoubleDouble;
+use super::dyadic::Dyadic;
+use super::enclosure::{Leading, enclose, high, low, round};
+use super::power_of_two;
+use super::round::round_if_certain;
+use crate::fma_dispatch;
+
+/// An integer of `64 LIMBS` bits in two's complement. Sums and differences wrap: the caller's window excludes it.
+///
+/// ```
+/// use rt_math::exact::{Fixed, Window};
+///
+/// // Are three decimal points on a line? In doubles (0.3 - 0.1) (0.2 - 0.1) - (0.2 - 0.1) (0.3 - 0.1) may round to anything.
+/// let points = [[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]];
+/// let window = Window::<1>::around(points.as_flattened()).unwrap();
+/// let [a, b, c] = points.map(|point| point.map(|x| window.fixed(x)));
+/// let (e, f) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+/// let turn = Fixed::<2>::product(&e[0], &f[1]) - Fixed::product(&e[1], &f[0]);
+/// assert!(turn.sign().is_eq());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fixed<const LIMBS: usize>([u64; LIMBS]);
+
+impl<const LIMBS: usize> Fixed<LIMBS> {
+    /// Zero.
+    pub const ZERO: Self = Self([0; LIMBS]);
+
+    /// One unit.
+    pub const ONE: Self = {
+        let mut limbs = [0; LIMBS];
+        limbs[0] = 1;
+        Self(limbs)
+    };
+
+    /// How the value compares with zero: `Less` is negative.
+    #[inline(always)]
+    #[must_use]
+    pub fn sign(&self) -> Ordering {
+        if self.is_negative() {
+            Ordering::Less
+        } else if self.0.iter().fold(0, |all, limb| all | limb) == 0 {
+            Ordering::Equal
+        } else {
+            Ordering::Greater
+        }
+    }
+
+    /// The exact product; `LIMBS` must be at least `A + B`, which the compiler checks.
+    #[inline(always)]
+    #[must_use]
+    pub fn product<const A: usize, const B: usize>(a: &Fixed<A>, b: &Fixed<B>) -> Self {
+        const { assert!(LIMBS >= A + B) };
+        let mut product = [0; LIMBS];
+        // As if both were not negative.
+        for i in 0..A {
+            let mut carry = 0;
+            for j in 0..B {
+                let wide =
+                    u128::from(a.0[i]) * u128::from(b.0[j]) + u128::from(product[i + j]) + u128::from(carry);
+                (product[i + j], carry) = (low(wide), high(wide));
+            }
+            product[i + B] = carry;
+        }
+        // A negative factor counted 2^(64 A) too much: take away the other one there.
+        let (mut borrow_a, mut borrow_b) = (false, false);
+        let (mask_a, mask_b) = (a.sign_mask(), b.sign_mask());
+        for j in 0..B {
+            (product[A + j], borrow_a) = product[A + j].borrowing_sub(b.0[j] & mask_a, borrow_a);
+        }
+        for i in 0..A {
+            (product[B + i], borrow_b) = product[B + i].borrowing_sub(a.0[i] & mask_b, borrow_b);
+        }
+        let filling = if product[A + B - 1] >> 63 == 1 { u64::MAX } else { 0 };
+        product[A + B..].fill(filling);
+        Self(product)
+    }
+
+    /// The cross product of two vectors; `LIMBS` must be at least `A + B`.
+    #[inline(always)]
+    #[must_use]
+    pub fn cross<const A: usize, const B: usize>(a: &[Fixed<A>; 3], b: &[Fixed<B>; 3]) -> [Self; 3] {
+        let part = |j: usize, k: usize| Self::product(&a[j], &b[k]) - Self::product(&a[k], &b[j]);
+        [part(1, 2), part(2, 0), part(0, 1)]
+    }
+
+    /// The dot product of two vectors; `LIMBS` must be at least `A + B`.
+    #[inline(always)]
+    #[must_use]
+    pub fn dot<const A: usize, const B: usize>(a: &[Fixed<A>; 3], b: &[Fixed<B>; 3]) -> Self {
+        Self::product(&a[0], &b[0]) + Self::product(&a[1], &b[1]) + Self::product(&a[2], &b[2])
+    }
+
+    /// The difference of two vectors.
+    #[inline(always)]
+    #[must_use]
+    pub fn difference(a: &[Self; 3], b: &[Self; 3]) -> [Self; 3] {
+        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+    }
+
+    /// The same number with more limbs.
+    #[inline(always)]
+    #[must_use]
+    pub fn widen<const WIDE: usize>(&self) -> Fixed<WIDE> {
+        const { assert!(WIDE >= LIMBS) };
+        let mut wide = [self.sign_mask(); WIDE];
+        wide[..LIMBS].copy_from_slice(&self.0);
+        Fixed(wide)
+    }
+
+    /// The correctly rounded double of the value times `2^exponent`: ties to even, subnormals and overflow to infinity
+    /// included. Zero gives +0.0, and what underflows keeps its sign.
+    #[inline]
+    #[must_use]
+    pub fn to_f64(&self, exponent: i32) -> f64 {
+        let Some(leading) = self.leading() else { return 0.0 };
+        signed(
+            round(u128::from(leading.bits), leading.exponent + exponent, leading.sticky),
+            self.is_negative(),
+        )
+    }
+
+    /// The correctly rounded quotient `numerator / denominator · 2^exponent`, with ties, range and zero as in
+    /// [`to_f64`](Self::to_f64); NaN if the denominator is zero.
+    ///
+    /// At most [`MOST_LIMBS`] limbs each.
+    #[inline]
+    #[must_use]
+    pub fn quotient<const D: usize>(numerator: &Self, denominator: &Fixed<D>, exponent: i32) -> f64 {
+        const { assert!(LIMBS <= MOST_LIMBS && D <= MOST_LIMBS) };
+        let Some(d) = denominator.leading() else { return f64::NAN };
+        let Some(n) = numerator.leading() else { return 0.0 };
+        let negative = numerator.is_negative() != denominator.is_negative();
+        // Both in 1..2.
+        let scale = n.exponent - d.exponent + exponent;
+        if SAFE.contains(&scale)
+            && let Some(quotient) = rounded_quotient(n.high_and_low(), d.high_and_low())
+        {
+            return signed(quotient * power_of_two(scale), negative);
+        }
+        // At the ends of the range, and next to a midpoint.
+        let (lower, upper) = enclose(n.interval().scaled(exponent), d.interval());
+        if lower == upper {
+            return signed(upper, negative);
+        }
+        Long::quotient(&numerator.long(exponent), &denominator.long(0))
+    }
+
+    /// Returns the correctly rounded root `(p + √r) / q · 2^exponent` of `q x² - 2 p x + c`, or `(p - √r) / q · 2^exponent`
+    /// if `minus`, where `self` is `p` and `r = p² - q c`; with ties, range and zero as in [`to_f64`](Self::to_f64).
+    ///
+    /// NaN if `q` is zero or `r` negative. At most [`MOST_LIMBS`] limbs each.
+    #[inline]
+    #[must_use]
+    pub fn root<const R: usize, const Q: usize, const C: usize>(
+        p: &Self,
+        minus: bool,
+        r: &Fixed<R>,
+        q: &Fixed<Q>,
+        c: &Fixed<C>,
+        exponent: i32,
+    ) -> f64 {
+        const { assert!(LIMBS <= MOST_LIMBS && R <= MOST_LIMBS && Q <= MOST_LIMBS && C <= MOST_LIMBS) };
+        let (Some(q_leading), false) = (q.leading(), r.is_negative()) else { return f64::NAN };
+        let p_negative = match (p.sign(), r.sign()) {
+            (Ordering::Equal, Ordering::Equal) => return 0.0,
+            (Ordering::Equal, _) => minus,
+            (sign, _) => sign.is_lt(),
+        };
+        let adds = p_negative == minus;
+        // (p ± √r) / q = c / (p ∓ √r), where p and the root do not cancel.
+        let (other, negative) = if adds {
+            (q_leading, p_negative != q.is_negative())
+        } else {
+            let Some(c_leading) = c.leading() else { return 0.0 };
+            (c_leading, c.is_negative() != p_negative)
+        };
+        let zero = Leading { bits: 0, next: 0, exponent: other.exponent, sticky: false };
+        let (p_leading, r_leading) = (p.leading(), r.leading());
+        // The root of r times 4^-half is in 1..2, or zero.
+        let half = r_leading.map_or(0, |r| (r.exponent + 63).div_euclid(2));
+        let whole = p_leading
+            .map_or(half, |p| if r_leading.is_some() { half.max(p.exponent + 63) } else { p.exponent + 63 });
+        let (p_shift, r_shift) = (p_leading.map_or(0, |p| p.exponent + 63 - whole), half - whole);
+        let scale = if adds { whole - (other.exponent + 63) } else { other.exponent + 63 - whole } + exponent;
+        if SAFE.contains(&scale) && p_shift > -SMALL && r_shift > -SMALL {
+            let odd = r_leading.map_or(0, |r| (r.exponent + 63).rem_euclid(2));
+            let [p, root, other] =
+                [p_leading, r_leading, Some(other)].map(|x| x.unwrap_or(zero).high_and_low());
+            let shifts = [power_of_two(p_shift), power_of_two(odd), power_of_two(r_shift)];
+            if let Some(quotient) = rounded_root(p, root, other, shifts, adds) {
+                return signed(quotient * power_of_two(scale), negative);
+            }
+        }
+        // p and √r times 2^exponent, r therefore twice that.
+        Long::root(&p.long(exponent), minus, &r.long(2 * exponent), &q.long(0))
+    }
+
+    #[inline(always)]
+    fn is_negative(&self) -> bool {
+        self.0[LIMBS - 1] >> 63 == 1
+    }
+
+    /// All ones for a negative number, else 0.
+    #[inline(always)]
+    fn sign_mask(&self) -> u64 {
+        0u64.wrapping_sub(self.0[LIMBS - 1] >> 63)
+    }
+
+    /// The limbs of the magnitude.
+    #[inline(always)]
+    fn magnitude(&self) -> [u64; LIMBS] {
+        if self.is_negative() { (-*self).0 } else { self.0 }
+    }
+
+    /// The leading bits of the magnitude; `None` for zero.
+    #[inline(always)]
+    fn leading(&self) -> Option<Leading> {
+        // Moved up until the highest limb is not zero; each step is one conditional move a limb.
+        let mut limbs = self.magnitude();
+        let mut top = LIMBS - 1;
+        for _ in 1..LIMBS {
+            if limbs[LIMBS - 1] == 0 {
+                limbs.copy_within(..LIMBS - 1, 1);
+                limbs[0] = 0;
+                top = top.wrapping_sub(1);
+            }
+        }
+        let limb = |depth: usize| if depth < LIMBS { limbs[LIMBS - 1 - depth] } else { 0 };
+        if limb(0) == 0 {
+            return None;
+        }
+        let shift = limb(0).leading_zeros();
+        let wide =
+            (u128::from(limb(0)) << 64 | u128::from(limb(1))) << shift | (u128::from(limb(2)) << shift) >> 64;
+        let rest = (3..LIMBS).fold(limb(2) << shift, |rest, depth| rest | limb(depth));
+        let exponent = position(top) - shift.cast_signed();
+        Some(Leading { bits: high(wide), next: low(wide), exponent, sticky: low(wide) != 0 || rest != 0 })
+    }
+
+    /// The number as `(high + low) 2^exponent` within `2 u²` of itself, with `|high|` in `1..2` and `|low|` at most `2^-52`;
+    /// `None` for zero.
+    #[inline(always)]
+    pub(crate) fn parts(&self) -> Option<([f64; 2], i32)> {
+        let leading = self.leading()?;
+        let negative = self.is_negative();
+        Some((leading.high_and_low().map(|x| signed(x, negative)), leading.exponent + 63))
+    }
+
+    /// The value times `2^exponent` as a long number.
+    #[cold]
+    #[inline(never)]
+    fn long(&self, exponent: i32) -> Long {
+        Long::from_integer(self.is_negative(), &self.magnitude(), exponent)
+    }
+}
+
+impl Leading {
+    /// The magnitude times the power of two that brings it to `1..2`, within `2 u²` of itself: the leading 53 bits, and the
+    /// next 63 bits rounded. Zero gives zero.
+    #[inline(always)]
+    fn high_and_low(self) -> [f64; 2] {
+        // (Signed: one instruction everywhere.)
+        let number = |bits: u64| bits.cast_signed() as f64;
+        let rest = (self.bits << 53 | self.next >> 11) >> 1;
+        [number(self.bits >> 11) * power_of_two(-52), number(rest) * power_of_two(-115)]
+    }
+}
+
+/// Exponents of a result in `1/4..4` that keep it and its neighbours normal and finite.
+const SAFE: core::ops::Range<i32> = -1018..1018;
+/// An operand that is smaller than the other by such a power of two is left to integers.
+const SMALL: i32 = 400;
+
+/// The error of [`rounded_quotient`] and [`rounded_root`] before the last rounding, relative: `docs/numerics.md`, section 1.
+const ERROR: f64 = 64.0 * (f64::EPSILON / 2.0) * (f64::EPSILON / 2.0);
+
+fma_dispatch! {
+    /// The quotient of two numbers in `1..2`, correctly rounded, if that is certain.
+    fn rounded_quotient(n: [f64; 2], d: [f64; 2]) -> Option<f64> = rounded_quotient_kernel;
+}
+
+#[inline(always)]
+fn rounded_quotient_kernel<const FMA: bool>([n, n_low]: [f64; 2], [d, d_low]: [f64; 2]) -> Option<f64> {
+    let quotient = DoubleDouble::<FMA>::sum(n, n_low) / DoubleDouble::sum(d, d_low);
+    round_if_certain(quotient.high(), quotient.low(), ERROR * quotient.high())
+}
+
+fma_dispatch! {
+    /// `(p + √r) / q` or, unless `over`, `q / (p + √r)`, correctly rounded, if that is certain; the numbers are not negative,
+    /// in `1..2` or zero, `p` then multiplied with the first shift, `r` with the second and its root with the third.
+    fn rounded_root(p: [f64; 2], r: [f64; 2], q: [f64; 2], shifts: [f64; 3], over: bool) -> Option<f64>
+        = rounded_root_kernel;
+}
+
+#[inline(always)]
+fn rounded_root_kernel<const FMA: bool>(
+    p: [f64; 2],
+    r: [f64; 2],
+    q: [f64; 2],
+    [p_shift, r_shift, root_shift]: [f64; 3],
+    over: bool,
+) -> Option<f64> {
+    let number = |[high, low]: [f64; 2]| DoubleDouble::<FMA>::sum(high, low);
+    let sum = number(p).scale(p_shift) + number(r).scale(r_shift).sqrt().scale(root_shift);
+    let quotient = if over { sum / number(q) } else { number(q) / sum };
+    round_if_certain(quotient.high(), quotient.low(), ERROR * quotient.high())
+}
+
+/// What [`Fixed::quotient`] and [`Fixed::root`] accept.
+pub const MOST_LIMBS: usize = 12;
+
+/// Decides what the leading bits do not: an operand of [`MOST_LIMBS`] limbs takes one more where it is shifted, a midpoint
+/// times it two more, and both are squared: `2 (MOST_LIMBS + 3)`, and two for the sums.
+type Long = Dyadic<32>;
+
+#[inline(always)]
+fn signed(magnitude: f64, negative: bool) -> f64 {
+    if negative { -magnitude } else { magnitude }
+}
+
+/// The weight of the lowest bit of a limb.
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "a few limbs")]
+fn position(limb: usize) -> i32 {
+    64 * limb as i32
+}
+
+impl<const LIMBS: usize> Add for Fixed<LIMBS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let (mut sum, mut carry) = (self.0, false);
+        for (limb, &more) in sum.iter_mut().zip(&other.0) {
+            (*limb, carry) = limb.carrying_add(more, carry);
+        }
+        Self(sum)
+    }
+}
+
+impl<const LIMBS: usize> Sub for Fixed<LIMBS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let (mut difference, mut borrow) = (self.0, false);
+        for (limb, &less) in difference.iter_mut().zip(&other.0) {
+            (*limb, borrow) = limb.borrowing_sub(less, borrow);
+        }
+        Self(difference)
+    }
+}
+
+impl<const LIMBS: usize> Neg for Fixed<LIMBS> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::ZERO - self
+    }
+}
+
+/// A power of two of which some doubles are multiples, each below `2^(64 LIMBS - 3)` times it in magnitude: so a [`Fixed`] of
+/// `LIMBS` limbs holds each of them and the difference of two, and one of `k LIMBS` limbs the sum of any six products of `k` of
+/// these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window<const LIMBS: usize> {
+    exponent: i32,
+}
+
+impl<const LIMBS: usize> Window<LIMBS> {
+    /// Bits of a magnitude.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "a few limbs")]
+    const BITS: i32 = 64 * LIMBS as i32 - 3;
+
+    /// The window in which all of these lie; `None` if there is none, or one of them is not finite.
+    #[inline(always)]
+    #[must_use]
+    pub fn around(numbers: &[f64]) -> Option<Self> {
+        let mut top = 0;
+        for x in numbers {
+            top = top.max(x.to_bits() & (u64::MAX >> 1));
+        }
+        // The largest number is below 2^(biased - 1022).
+        let biased = (top >> 52) as i32;
+        let window = Self { exponent: biased.max(1) - 1022 - Self::BITS };
+        let mut fits = biased < 2047;
+        for x in numbers {
+            fits &= window.lost_bits(*x) == 0;
+        }
+        fits.then_some(window)
+    }
+
+    /// The unit: a number `x` of the window is `fixed(x) 2^exponent`.
+    #[inline(always)]
+    #[must_use]
+    pub fn exponent(self) -> i32 {
+        self.exponent
+    }
+
+    /// The number in units of the window; it must be one of those that the window is around.
+    #[inline(always)]
+    #[must_use]
+    pub fn fixed(self, x: f64) -> Fixed<LIMBS> {
+        let mut limbs = [0; LIMBS];
+        let (mantissa, exponent) = parts(x);
+        let shift = exponent - self.exponent;
+        // (A shift to the right loses zeros, or what the limb below has.)
+        for (limb, i) in limbs.iter_mut().zip(0..) {
+            let shift = shift - 64 * i;
+            *limb = if shift >= 0 { shifted_left(mantissa, shift) } else { shifted_right(mantissa, -shift) };
+        }
+        let magnitude = Fixed(limbs);
+        if x.is_sign_negative() { -magnitude } else { magnitude }
+    }
+
+    /// The bits of the number below the unit.
+    #[inline(always)]
+    fn lost_bits(self, x: f64) -> u64 {
+        let (mantissa, exponent) = parts(x);
+        let shift = self.exponent - exponent;
+        if shift <= 0 {
+            0
+        } else if shift < 64 {
+            mantissa & ((1 << shift) - 1)
+        } else {
+            mantissa
+        }
+    }
+}
+
+/// The magnitude of a finite double as an integer times a power of two.
+#[inline(always)]
+fn parts(x: f64) -> (u64, i32) {
+    let bits = x.to_bits();
+    let biased = ((bits >> 52) & 0x7ff) as i32;
+    let fraction = bits & ((1 << 52) - 1);
+    (if biased == 0 { fraction } else { fraction | 1 << 52 }, biased.max(1) - 1075)
+}
+
+#[inline(always)]
+fn shifted_left(x: u64, by: i32) -> u64 {
+    x.checked_shl(by.cast_unsigned()).unwrap_or(0)
+}
+
+#[inline(always)]
+fn shifted_right(x: u64, by: i32) -> u64 {
+    x.checked_shr(by.cast_unsigned()).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::{self, Exact, Rng, cases, exact};
+
+    fn value<const LIMBS: usize>(x: &Fixed<LIMBS>, exponent: i32) -> Exact {
+        let limb = Exact::from(2).pow(64);
+        let digits = x.magnitude();
+        let integer = digits.iter().rev().fold(Exact::ZERO, |sum, &digit| sum * &limb + Exact::from(digit));
+        let magnitude = integer * Exact::from(2).pow(exponent as isize);
+        if x.is_negative() { -magnitude } else { magnitude }
+    }
+
+    /// Numbers of one scale: full doubles, decimals, grid points, zeros.
+    fn numbers<const N: usize>(rng: &mut Rng) -> [f64; N] {
+        let (kind, scale) = (rng.below(4), 2f64.powi(rng.integer(-300..300)));
+        core::array::from_fn(|_| {
+            let x = rng.with_exponent(-6..1);
+            scale
+                * match kind {
+                    0 => x,
+                    1 => (x * 100.0).round() / 100.0,
+                    2 => (x * 8.0).round() / 8.0,
+                    _ if rng.below(2) == 0 => 0.0,
+                    _ => x,
+                }
+        })
+    }
+
+    #[test]
+    fn arithmetic_is_exact() {
+        let mut rng = Rng::new(41);
+        let mut inside = 0;
+        for _ in 0..cases(1_000_000) {
+            let [a, b, c, d] = numbers(&mut rng);
+            let Some(window) = Window::<1>::around(&[a, b, c, d]) else { continue };
+            inside += 1;
+            let unit = window.exponent();
+            let [x, y, z, w] = [a, b, c, d].map(|x| window.fixed(x));
+            assert_eq!(value(&x, unit), exact(a), "{a:e} in {window:?}");
+            let (xy, zw) = (x - y, z - w);
+            assert_eq!(value(&xy, unit), exact(a) - exact(b));
+            assert_eq!(xy.sign(), exact(a).cmp(&exact(b)));
+            let square = Fixed::<2>::product(&xy, &zw);
+            let truth = (exact(a) - exact(b)) * (exact(c) - exact(d));
+            assert_eq!(value(&square, 2 * unit), truth);
+            let cube = Fixed::<3>::product(&square, &xy) - Fixed::product(&x, &square);
+            let truth = &truth * (exact(a) - exact(b)) - exact(a) * &truth;
+            assert_eq!(value(&cube, 3 * unit), truth);
+            assert_eq!(value(&cube.widen::<6>(), 3 * unit), truth);
+            assert_eq!(
+                value(&Fixed::<6>::product(&square, &-cube), 5 * unit),
+                -(truth.clone() * (exact(a) - exact(b)) * (exact(c) - exact(d)))
+            );
+            let bits = |x: f64| x.to_bits();
+            assert_eq!(bits(cube.to_f64(3 * unit)), bits(oracle::round(&truth)), "{cube:?}");
+        }
+        assert!(inside > 5_000, "{inside}");
+    }
+
+    #[test]
+    fn a_window_holds_what_fits_and_nothing_else() {
+        let mut rng = Rng::new(42);
+        let (mut inside, mut outside) = (0, 0);
+        for _ in 0..cases(1_000_000) {
+            let spread = rng.integer(1..140);
+            let scale = rng.integer(-1074..900);
+            let xs: [f64; 3] = core::array::from_fn(|_| rng.with_exponent(scale..scale + spread));
+            let largest = xs.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            let check = |window: Option<i32>, bits: i32, count: &mut dyn FnMut(bool)| {
+                let Some(unit) = window else { return count(false) };
+                count(true);
+                // Below 2^bits units, all of them whole numbers.
+                assert!(exact(largest) < Exact::from(2).pow((unit + bits) as isize), "{xs:?} {unit}");
+            };
+            let mut count = |fits: bool| if fits { inside += 1 } else { outside += 1 };
+            let one = Window::<1>::around(&xs);
+            check(one.map(Window::exponent), 61, &mut count);
+            let two = Window::<2>::around(&xs);
+            check(two.map(Window::exponent), 125, &mut count);
+            for x in xs {
+                if let Some(window) = one {
+                    assert_eq!(value(&window.fixed(x), window.exponent()), exact(x));
+                }
+                if let Some(window) = two {
+                    assert_eq!(value(&window.fixed(x), window.exponent()), exact(x));
+                }
+            }
+            assert!(two.is_some() || one.is_none());
+        }
+        assert!(inside > 1_000 && outside > 1_000, "{inside} {outside}");
+        assert_eq!(Window::<1>::around(&[1.0, f64::NAN]), None);
+        assert_eq!(Window::<1>::around(&[f64::INFINITY]), None);
+        assert!(Window::<1>::around(&[0.0, -0.0]).is_some());
+    }
+
+    #[test]
+    fn quotients_round_correctly() {
+        let mut rng = Rng::new(43);
+        let mut ties = 0;
+        for i in 0..cases(1_000_000) {
+            let exponent = [0, rng.integer(-1200..1200)][rng.below(2)];
+            let (n, d): (Fixed<3>, Fixed<2>) = match i % 3 {
+                0 => (any(&mut rng), any(&mut rng)),
+                // halfway between two doubles, or hardly off
+                1 => {
+                    let d: Fixed<2> = Fixed([rng.bits() >> rng.below(64), 0]);
+                    let tie = Fixed([1 << 53 | rng.bits() >> 11 | 1, 0]);
+                    let dust = Fixed([rng.below(2) as u64, 0, 0]);
+                    let n: Fixed<4> = Fixed::product(&tie, &d);
+                    (Fixed([n.0[0], n.0[1], n.0[2]]) + dust, d)
+                }
+                _ => (Fixed([rng.bits() % 1000, 0, 0]), -Fixed([rng.bits() % 1000, 0])),
+            };
+            let found = Fixed::quotient(&n, &d, exponent);
+            if d.sign().is_eq() {
+                assert!(found.is_nan());
+                continue;
+            }
+            let truth = value(&n, exponent) / value(&d, 0);
+            ties += usize::from(i % 3 == 1 && found.is_normal());
+            assert_eq!(found.to_bits(), oracle::round(&truth).to_bits(), "{n:?} / {d:?} {exponent}");
+        }
+        assert!(ties > 1_000, "{ties}");
+    }
+
+    fn any<const LIMBS: usize>(rng: &mut Rng) -> Fixed<LIMBS> {
+        let mut limbs = [0; LIMBS];
+        let live = 1 + rng.below(LIMBS);
+        for limb in &mut limbs[..live] {
+            *limb = rng.bits();
+        }
+        limbs[live - 1] >>= rng.below(64);
+        let number = Fixed(limbs);
+        if rng.below(2) == 0 { -number } else { number }
+    }
+
+    #[test]
+    fn roots_round_correctly() {
+        let mut rng = Rng::new(44);
+        let mut cancelling = 0;
+        for i in 0..cases(200_000) {
+            let exponent = [0, rng.integer(-1100..1000)][rng.below(2)];
+            let small = |rng: &mut Rng, bits: usize| {
+                let x = Fixed([rng.bits() >> (63 - rng.below(bits))]);
+                if rng.below(2) == 0 { -x } else { x }
+            };
+            // q x² - 2 p x + c from its coefficients, or from roots that are whole numbers
+            let (p, q, c): (Fixed<2>, Fixed<1>, Fixed<2>) = if i % 2 == 0 {
+                (small(&mut rng, 60).widen(), small(&mut rng, 60), small(&mut rng, 20 + i % 40).widen())
+            } else {
+                let (x, y, q) = (small(&mut rng, 25), small(&mut rng, 25), small(&mut rng, 10));
+                let q = q + q;
+                let half = |sum: Fixed<1>| Fixed::<1>([sum.0[0] >> 1 | sum.0[0] & 1 << 63]);
+                let (sum, product) = (Fixed::<2>::product(&half(q), &(x + y)), Fixed::<2>::product(&x, &y));
+                (
+                    sum,
+                    q,
+                    Fixed([Fixed::<3>::product(&product, &q).0[0], Fixed::<3>::product(&product, &q).0[1]]),
+                )
+            };
+            let r = Fixed::<4>::product(&p, &p) - Fixed::<3>::product(&c, &q).widen();
+            let (p_truth, r_truth, q_truth) = (value(&p, 0), value(&r, 0), value(&q, 0));
+            for minus in [false, true] {
+                let found = Fixed::root(&p, minus, &r, &q, &c, exponent);
+                if r_truth < Exact::ZERO || q_truth == Exact::ZERO {
+                    assert!(found.is_nan());
+                    continue;
+                }
+                cancelling += usize::from(p.is_negative() != minus);
+                let unit = Exact::from(2).pow(exponent as isize);
+                // The sign of (p ± √r) unit / q - m.
+                let sign = |m: &Exact| {
+                    let rest = m * &q_truth / &unit - &p_truth;
+                    let order = match (minus, rest.cmp(&Exact::ZERO)) {
+                        (false, Ordering::Less) => Ordering::Greater,
+                        (false, _) => r_truth.cmp(&rest.sqr()),
+                        (true, Ordering::Greater) => Ordering::Less,
+                        (true, _) => rest.sqr().cmp(&r_truth),
+                    };
+                    if q_truth < Exact::ZERO { order.reverse() } else { order }
+                };
+                assert!(
+                    oracle::is_rounding_of(found, sign),
+                    "{p:?} {minus} {r:?} {q:?} {c:?} {exponent}: {found:e}"
+                );
+            }
+        }
+        assert!(cancelling > 1_000, "{cancelling}");
+    }
+}
