@@ -7,7 +7,7 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rt_math::exact::{DoubleDouble, Dyadic, round_if_certain};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, Window, round_if_certain};
 use rt_math::fma_dispatch;
 
 use crate::Triangle;
@@ -59,9 +59,7 @@ pub fn inside_triangle(point: DVec3, triangle: &Triangle) -> Inside {
     if !point.is_finite() {
         return Inside::Outside;
     }
-    let turns = filtered_signs(point, triangle)
-        .or_else(|| double_double_signs(point, triangle))
-        .unwrap_or_else(|| integer_signs(point, triangle));
+    let turns = filtered_signs(point, triangle).unwrap_or_else(|| exact_signs(point, triangle));
     if turns.contains(&Ordering::Less) {
         return Inside::Outside;
     }
@@ -92,7 +90,7 @@ impl Triangle {
         if !point.is_finite() || self.is_degenerate() {
             return None;
         }
-        Some(double_double_weights(point, self).unwrap_or_else(|| integer_weights(point, self)))
+        Some(double_double_weights(point, self).unwrap_or_else(|| exact_weights(point, self)))
     }
 
     /// Whether a point and the three vertices lie in one plane, exactly; false if the point is not finite.
@@ -135,6 +133,69 @@ fn double_double_turns<const FMA: bool>(
     let n = cross(&difference(b, a), &difference(c, a));
     let turn = |from, to| dot(&n, &cross(&difference(to, from), &difference(point, from)));
     ([turn(b, c), turn(c, a), turn(a, b)], dot(&n, &n))
+}
+
+/// The signs of the turns; slow path, always decides.
+#[cold]
+#[inline(never)]
+fn exact_signs(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
+    if let Some(turns) = FixedTurns::<4>::new::<1, 2>(point, triangle) {
+        turns.signs()
+    } else if let Some(turns) = FixedTurns::<8>::new::<2, 4>(point, triangle) {
+        turns.signs()
+    } else {
+        double_double_signs(point, triangle).unwrap_or_else(|| integer_signs(point, triangle))
+    }
+}
+
+/// The weights, correctly rounded, of a triangle that has area; slow path, always decides.
+#[cold]
+#[inline(never)]
+fn exact_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
+    if let Some(turns) = FixedTurns::<4>::new::<1, 2>(point, triangle) {
+        turns.weights()
+    } else if let Some(turns) = FixedTurns::<8>::new::<2, 4>(point, triangle) {
+        turns.weights()
+    } else {
+        integer_weights(point, triangle)
+    }
+}
+
+/// The turns and `n . n` in fixed-point numbers, where all points lie in one window: coordinates of `N` limbs, dot products of
+/// `S = 2 N`, turns of `Q = 4 N`.
+///
+/// With the edges `e = b - a` and `f = c - a` and `q = point - a`, Lagrange's identity gives the turns as minors of the dot
+/// products: `(f.f) (e.q) - (e.f) (f.q)` for the vertex `b`, `(e.e) (f.q) - (e.f) (e.q)` for `c`, and `(e.e) (f.f) - (e.f)²` for
+/// their sum.
+struct FixedTurns<const Q: usize> {
+    turns: [Fixed<Q>; 3],
+    sum: Fixed<Q>,
+}
+
+impl<const Q: usize> FixedTurns<Q> {
+    #[inline(always)]
+    fn new<const N: usize, const S: usize>(point: DVec3, triangle: &Triangle) -> Option<Self> {
+        let [a, b, c] = triangle.vertices();
+        let points = [a, b, c, point];
+        let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
+        let [a, b, c, p] = points.map(|point| point.to_array().map(|x| window.fixed(x)));
+        let [e, f, q] = [b, c, p].map(|end| Fixed::difference(&end, &a));
+        let (ee, ef, ff) = (Fixed::<S>::dot(&e, &e), Fixed::<S>::dot(&e, &f), Fixed::<S>::dot(&f, &f));
+        let (eq, fq) = (Fixed::<S>::dot(&e, &q), Fixed::<S>::dot(&f, &q));
+        let minor = |a: &Fixed<S>, d: &Fixed<S>, b: &Fixed<S>, c: &Fixed<S>| {
+            Fixed::<Q>::product(a, d) - Fixed::product(b, c)
+        };
+        let (sum, b, c) = (minor(&ee, &ff, &ef, &ef), minor(&ff, &eq, &ef, &fq), minor(&ee, &fq, &ef, &eq));
+        Some(Self { turns: [sum - b - c, b, c], sum })
+    }
+
+    fn signs(&self) -> [Ordering; 3] {
+        self.turns.map(|turn| turn.sign())
+    }
+
+    fn weights(&self) -> [f64; 3] {
+        self.turns.map(|turn| Fixed::quotient(&turn, &self.sum, 0))
+    }
 }
 
 #[cold]
@@ -205,7 +266,27 @@ fn coplanar(point: DVec3, triangle: &Triangle) -> bool {
     // Eight roundings per term, six terms.
     let error = 64.0 * U * (edge * edge) * far + UNDERFLOW;
     let off = edge < FARTHEST && far < FARTHEST && volume.abs() > error;
-    !off && integer_coplanar(point, triangle)
+    !off && exact_coplanar(point, triangle)
+}
+
+#[cold]
+#[inline(never)]
+fn exact_coplanar(point: DVec3, triangle: &Triangle) -> bool {
+    fixed_coplanar::<1, 2, 3>(point, triangle)
+        .or_else(|| fixed_coplanar::<2, 4, 6>(point, triangle))
+        .unwrap_or_else(|| integer_coplanar(point, triangle))
+}
+
+fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(
+    point: DVec3,
+    triangle: &Triangle,
+) -> Option<bool> {
+    let [a, b, c] = triangle.vertices();
+    let points = [a, b, c, point];
+    let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
+    let [a, b, c, p] = points.map(|point| point.to_array().map(|x| window.fixed(x)));
+    let [e, f, q] = [b, c, p].map(|end| Fixed::difference(&end, &a));
+    Some(Fixed::<V>::dot(&Fixed::<A>::cross(&e, &f), &q).sign() == Ordering::Equal)
 }
 
 #[cold]
@@ -222,7 +303,7 @@ mod tests {
 
     #[test]
     fn every_stage_decides() {
-        let mut counts = [0; 3];
+        let (mut counts, mut narrow) = ([0; 3], 0);
         for k in 0..300 {
             let s = f64::from(k) / 300.0;
             let triangle = Triangle::new(
@@ -235,6 +316,18 @@ mod tests {
             // interior; on an edge but for rounding; a vertex
             for point in [a + 0.3 * (b - a) + 0.5 * s * (c - a), a + s * (b - a), b] {
                 let exact = integer_signs(point, &triangle);
+                assert_eq!(exact_signs(point, &triangle), exact, "{point:?}");
+                let fixed = FixedTurns::<8>::new::<2, 4>(point, &triangle).expect("a window of two limbs");
+                assert_eq!(fixed.signs(), exact, "{point:?}");
+                assert_eq!(fixed.weights(), integer_weights(point, &triangle), "{point:?}");
+                if let Some(fixed) = FixedTurns::<4>::new::<1, 2>(point, &triangle) {
+                    narrow += 1;
+                    assert_eq!(fixed.signs(), exact, "{point:?}");
+                    assert_eq!(fixed.weights(), integer_weights(point, &triangle), "{point:?}");
+                }
+                let coplanar = integer_coplanar(point, &triangle);
+                assert_eq!(fixed_coplanar::<2, 4, 6>(point, &triangle), Some(coplanar), "{point:?}");
+                assert!(fixed_coplanar::<1, 2, 3>(point, &triangle).is_none_or(|fixed| fixed == coplanar));
                 if let Some(signs) = filtered_signs(point, &triangle) {
                     counts[0] += 1;
                     assert_eq!(signs, exact, "{point:?}");
@@ -246,6 +339,9 @@ mod tests {
                 }
             }
         }
-        assert!(counts[0] > 200 && counts[1] > 200 && counts[2] >= 300, "{counts:?}");
+        assert!(
+            counts[0] > 200 && counts[1] > 200 && counts[2] >= 300 && narrow > 300,
+            "{counts:?} {narrow}"
+        );
     }
 }

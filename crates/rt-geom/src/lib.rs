@@ -6,6 +6,7 @@ mod plane;
 mod ray;
 mod simd;
 mod sphere;
+mod stage;
 mod tree;
 mod triangle;
 

@@ -1,12 +1,14 @@
 //! The report's plane of a triangle, `a x + b y + c z = 1`, by the pseudo-inverse.
 
 use glam::{DMat3, DVec3};
-use rt_math::pseudo_inverse;
+use rt_math::pseudo_inverse_row_sums;
 
 use crate::Triangle;
 
 /// Returns the coefficients `(a, b, c)` of the plane `a x + b y + c z = 1` through the vertices: `M+ (1, 1, 1)`, where
 /// the rows of `M` are the vertices and `M+` is its pseudo-inverse.
+///
+/// Each coefficient is correctly rounded: the three sums have one denominator, so each is one exact quotient.
 ///
 /// A plane through the origin has no such form. The answer is then the least-squares solution, which is another
 /// plane: nothing in the answer itself tells. The intersection of rays and triangles does not use this form.
@@ -21,7 +23,7 @@ use crate::Triangle;
 pub fn plane_by_pseudo_inverse(triangle: &Triangle) -> DVec3 {
     let [a, b, c] = triangle.vertices();
     let rows = DMat3::from_cols(a, b, c).transpose();
-    pseudo_inverse(rows).matrix * DVec3::ONE
+    pseudo_inverse_row_sums(rows)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 
 use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use glam::DVec3;
-use rt_math::exact::{self as scalar, Dyadic, two_prod};
+use rt_math::exact::{self as scalar, Dyadic, Fixed, Window, two_prod};
 
 use super::basis::{Tangent, offset};
 use super::real::{Wide, dot};
@@ -393,7 +393,37 @@ fn holds(outer: f64, inner: f64, square: &Number) -> bool {
 #[cold]
 #[inline(never)]
 pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> bool {
-    holds(radius, sphere.radius(), &square_of_distance(center, sphere.center()))
+    contains_fixed::<1, 2>(center, radius, sphere)
+        .or_else(|| contains_fixed::<2, 4>(center, radius, sphere))
+        .unwrap_or_else(|| holds(radius, sphere.radius(), &square_of_distance(center, sphere.center())))
+}
+
+/// The same in fixed-point numbers, if one window holds all: coordinates of `N` limbs, squares of `S = 2 N`.
+fn contains_fixed<const N: usize, const S: usize>(
+    center: DVec3,
+    radius: f64,
+    sphere: &Sphere,
+) -> Option<bool> {
+    let c = sphere.center();
+    let window =
+        Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, radius, sphere.radius()])?;
+    let [from, to] = [center, c].map(|point| point.to_array().map(|x| window.fixed(x)));
+    let (offset, room) =
+        (Fixed::difference(&from, &to), window.fixed(radius) - window.fixed(sphere.radius()));
+    let excess = Fixed::<S>::dot(&offset, &offset) - Fixed::product(&room, &room);
+    Some(room.sign().is_ge() && excess.sign().is_le())
+}
+
+/// The reach of `sphere` from `center` rounded to nearest, in fixed-point numbers.
+fn reach_fixed<const N: usize, const S: usize>(center: DVec3, sphere: &Sphere) -> Option<f64> {
+    let c = sphere.center();
+    let window = Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, sphere.radius()])?;
+    let [from, to] = [center, c].map(|point| point.to_array().map(|x| window.fixed(x)));
+    let (offset, r) = (Fixed::difference(&from, &to), window.fixed(sphere.radius()));
+    let square = Fixed::<S>::dot(&offset, &offset);
+    // r + √square is a root of x² - 2 r x + (r² - square).
+    let rest = Fixed::<S>::product(&r, &r) - square;
+    Some(Fixed::root(&r, false, &square, &Fixed::<1>::ONE, &rest, window.exponent()))
 }
 
 /// The smallest double that is not below the reach of `sphere` from `center`; infinite if no finite one is.
@@ -401,15 +431,22 @@ pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> b
 #[inline(never)]
 pub(super) fn smallest_radius(center: DVec3, sphere: &Sphere) -> f64 {
     asked();
-    let square = square_of_distance(center, sphere.center());
     // The reach rounded to nearest: that double or the next.
-    let inner = Number::from_f64(sphere.radius());
-    let nearest = Number::root(&inner, false, &square, &Number::power_of_two(0));
-    if nearest.is_infinite() || holds(nearest, sphere.radius(), &square) {
+    let nearest = reach_fixed::<1, 2>(center, sphere)
+        .or_else(|| reach_fixed::<2, 4>(center, sphere))
+        .unwrap_or_else(|| reach_of_any_size(center, sphere));
+    if nearest.is_infinite() || contains_exactly(center, nearest, sphere) {
         nearest
     } else {
         nearest.next_up()
     }
+}
+
+#[cold]
+#[inline(never)]
+fn reach_of_any_size(center: DVec3, sphere: &Sphere) -> f64 {
+    let square = square_of_distance(center, sphere.center());
+    Number::root(&Number::from_f64(sphere.radius()), false, &square, &Number::power_of_two(0))
 }
 
 /// The minimal sphere of two spheres, in closed form: the bracket, and a lower bound.

@@ -1,15 +1,18 @@
-//! The stages after the filter and the Newton step: double-double, integers.
+//! The stages after the filter and the Newton step: fixed-point numbers of one limb, double-double, fixed-point numbers of
+//! two limbs, integers of any size; in the order of their cost.
 
 use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
 use rt_math::Roots;
-use rt_math::exact::{DoubleDouble, Dyadic, round_if_certain};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, Window, round_if_certain};
+use rt_math::fma_dispatch;
 
 use super::{Side, Sphere, U};
 use crate::Ray;
 use crate::ray::{holds, max_abs};
+use crate::stage::{Stage, decided};
 
 /// Up to here in magnitude the coordinates relative to the center must be for double-double: `2^300`.
 const FARTHEST: f64 = f64::from_bits((1023 + 300) << 52);
@@ -20,11 +23,24 @@ const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
 /// Swallows what underflow does to a `t`: `2^-1000`.
 const UNDERFLOW_T: f64 = f64::from_bits((1023 - 1000) << 52);
 
-/// Returns the closest root in the range, whatever it takes.
+/// Returns the closest root in the range; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn closest(sphere: &Sphere, ray: &Ray, within: Range<f64>) -> Option<f64> {
-    match roots(sphere, ray) {
+    if let Some(equation) = Equation::<1, 2, 4>::new(sphere, ray) {
+        decided(Stage::Fixed);
+        return equation.closest(&within);
+    }
+    let roots = if let Some(roots) = double_double_roots(sphere, ray) {
+        decided(Stage::DoubleDouble);
+        roots
+    } else if let Some(equation) = Equation::<2, 4, 8>::new(sphere, ray) {
+        decided(Stage::Fixed);
+        return equation.closest(&within);
+    } else {
+        integer_roots(sphere, ray)
+    };
+    match roots {
         Roots::One(t) if holds(&within, t) => Some(t),
         Roots::Two(near, _) if holds(&within, near) => Some(near),
         Roots::Two(_, far) if holds(&within, far) => Some(far),
@@ -32,21 +48,36 @@ pub(super) fn closest(sphere: &Sphere, ray: &Ray, within: Range<f64>) -> Option<
     }
 }
 
-/// Returns the roots, whatever it takes.
+/// Returns the roots; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn roots(sphere: &Sphere, ray: &Ray) -> Roots {
-    double_double_roots(sphere, ray).unwrap_or_else(|| integer_roots(sphere, ray))
+    if let Some(equation) = Equation::<1, 2, 4>::new(sphere, ray) {
+        decided(Stage::Fixed);
+        return equation.roots();
+    }
+    if let Some(roots) = double_double_roots(sphere, ray) {
+        decided(Stage::DoubleDouble);
+        return roots;
+    }
+    if let Some(equation) = Equation::<2, 4, 8>::new(sphere, ray) {
+        decided(Stage::Fixed);
+        return equation.roots();
+    }
+    integer_roots(sphere, ray)
 }
 
-/// Returns on which side of the surface a point lies, whatever it takes.
+/// Returns on which side of the surface a point lies; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn side(sphere: &Sphere, point: DVec3) -> Side {
     if !point.is_finite() {
         return Side::Outside;
     }
-    let sign = double_double_side(sphere, point).unwrap_or_else(|| integer_side(sphere, point));
+    let sign = fixed_side::<1, 2>(sphere, point)
+        .or_else(|| double_double_side(sphere, point))
+        .or_else(|| fixed_side::<2, 4>(sphere, point))
+        .unwrap_or_else(|| integer_side(sphere, point));
     match sign {
         Ordering::Less => Side::Inside,
         Ordering::Equal => Side::On,
@@ -54,8 +85,86 @@ pub(super) fn side(sphere: &Sphere, point: DVec3) -> Side {
     }
 }
 
-/// The filter and the roots once more, in double-double; `None` if that is not certain either.
-fn double_double_roots(sphere: &Sphere, ray: &Ray) -> Option<Roots> {
+/// The quadratic equation of a line and a sphere in fixed-point numbers, where center, radius and origin lie in one window
+/// and the direction in another: `a T² + 2 b T + c = 0` with `a`, `b`, `c` of `S = 2 N` limbs, and `Delta` of `Q = 4 N`.
+struct Equation<const N: usize, const S: usize, const Q: usize> {
+    a: Fixed<S>,
+    b: Fixed<S>,
+    c: Fixed<S>,
+    delta: Fixed<Q>,
+    /// `t` is `T 2^exponent`.
+    exponent: i32,
+}
+
+impl<const N: usize, const S: usize, const Q: usize> Equation<N, S, Q> {
+    #[inline(always)]
+    fn new(sphere: &Sphere, ray: &Ray) -> Option<Self> {
+        let (o, center, d) = (ray.origin(), sphere.center, ray.direction());
+        let window = Window::<N>::around(&[o.x, o.y, o.z, center.x, center.y, center.z, sphere.radius])?;
+        let direction_window = Window::<N>::around(&d.to_array())?;
+        let [o, center] = [o, center].map(|point| point.to_array().map(|x| window.fixed(x)));
+        let (w, r) = (Fixed::difference(&o, &center), window.fixed(sphere.radius));
+        let d = d.to_array().map(|x| direction_window.fixed(x));
+        let (a, b) = (Fixed::dot(&d, &d), Fixed::dot(&w, &d));
+        let c = Fixed::dot(&w, &w) - Fixed::product(&r, &r);
+        let delta = Fixed::product(&b, &b) - Fixed::product(&a, &c);
+        Some(Self { a, b, c, delta, exponent: window.exponent() - direction_window.exponent() })
+    }
+
+    fn tangent(&self) -> f64 {
+        Fixed::quotient(&-self.b, &self.a, self.exponent)
+    }
+
+    fn near(&self) -> f64 {
+        Fixed::root(&-self.b, true, &self.delta, &self.a, &self.c, self.exponent)
+    }
+
+    fn far(&self) -> f64 {
+        Fixed::root(&-self.b, false, &self.delta, &self.a, &self.c, self.exponent)
+    }
+
+    fn roots(&self) -> Roots {
+        match self.delta.sign() {
+            Ordering::Less => Roots::None,
+            Ordering::Equal => Roots::One(self.tangent()),
+            Ordering::Greater => Roots::Two(self.near(), self.far()),
+        }
+    }
+
+    /// The closest root in the range; only roots that may lie in it are computed.
+    fn closest(&self, within: &Range<f64>) -> Option<f64> {
+        let inside = |t: f64| holds(within, t).then_some(t);
+        match self.delta.sign() {
+            Ordering::Less => None,
+            Ordering::Equal => inside(self.tangent()),
+            // Two different roots with the product c / a and the sum -2 b / a. A range from +0.0 on holds no negative one.
+            Ordering::Greater if within.start.to_bits() == 0 => match (self.c.sign(), self.b.sign()) {
+                (Ordering::Greater, Ordering::Greater) => None,
+                (Ordering::Less, _) => inside(self.far()),
+                (Ordering::Equal, Ordering::Greater) => inside(0.0),
+                _ => inside(self.near()).or_else(|| inside(self.far())),
+            },
+            Ordering::Greater => inside(self.near()).or_else(|| inside(self.far())),
+        }
+    }
+}
+
+/// Compares the distance of a point from the center with the radius, in fixed-point numbers.
+fn fixed_side<const N: usize, const S: usize>(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
+    let c = sphere.center;
+    let window = Window::<N>::around(&[point.x, point.y, point.z, c.x, c.y, c.z, sphere.radius])?;
+    let [p, c] = [point, c].map(|point| point.to_array().map(|x| window.fixed(x)));
+    let (w, r) = (Fixed::difference(&p, &c), window.fixed(sphere.radius));
+    Some((Fixed::<S>::dot(&w, &w) - Fixed::product(&r, &r)).sign())
+}
+
+fma_dispatch! {
+    /// The filter and the roots once more, in double-double; `None` if that is not certain either.
+    fn double_double_roots(sphere: &Sphere, ray: &Ray) -> Option<Roots> = double_double_roots_kernel;
+}
+
+#[inline(always)]
+fn double_double_roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Option<Roots> {
     let (o, c, d) = (ray.origin(), sphere.center, ray.direction());
     let reach = max_abs(d);
     let far = max_abs(o - c);
@@ -63,12 +172,16 @@ fn double_double_roots(sphere: &Sphere, ray: &Ray) -> Option<Roots> {
     if !(far + sphere.radius <= FARTHEST && (1e-30..=1e30).contains(&reach)) {
         return None;
     }
-    let w = [Number::difference(o.x, c.x), Number::difference(o.y, c.y), Number::difference(o.z, c.z)];
-    let d = d.to_array().map(Number::new);
+    let w = [
+        DoubleDouble::<FMA>::difference(o.x, c.x),
+        DoubleDouble::<FMA>::difference(o.y, c.y),
+        DoubleDouble::<FMA>::difference(o.z, c.z),
+    ];
+    let d = d.to_array().map(DoubleDouble::<FMA>::new);
     let x = [w[1] * d[2] - w[2] * d[1], w[2] * d[0] - w[0] * d[2], w[0] * d[1] - w[1] * d[0]];
     let x_square = dot(x, x);
     let a = dot(d, d);
-    let radius_square = Number::product(sphere.radius, sphere.radius);
+    let radius_square = DoubleDouble::<FMA>::product(sphere.radius, sphere.radius);
     let reach_square = a * radius_square;
     let delta = reach_square - x_square;
     let product = 2.0 * reach * far;
@@ -116,7 +229,8 @@ fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
 /// Cold stages need no FMA.
 type Number = DoubleDouble<false>;
 
-fn dot(v: [Number; 3], w: [Number; 3]) -> Number {
+#[inline(always)]
+fn dot<const FMA: bool>(v: [DoubleDouble<FMA>; 3], w: [DoubleDouble<FMA>; 3]) -> DoubleDouble<FMA> {
     v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
 }
 
@@ -125,7 +239,10 @@ fn dot(v: [Number; 3], w: [Number; 3]) -> Number {
 /// `t = 3077` and `b = -3222`, that of twice a double times `d . d`.
 type RootInteger = Dyadic<200>;
 
+#[cold]
+#[inline(never)]
 fn integer_roots(sphere: &Sphere, ray: &Ray) -> Roots {
+    decided(Stage::Integers);
     let w = difference(ray.origin(), sphere.center);
     let d = ray.direction().to_array().map(RootInteger::from_f64);
     let r = RootInteger::from_f64(sphere.radius);
@@ -166,6 +283,7 @@ mod tests {
     use super::super::Line;
     use super::super::newton::rounded;
     use super::*;
+    use crate::stage::decisions;
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).
     fn random(state: &mut u64) -> f64 {
@@ -184,6 +302,7 @@ mod tests {
     struct Stages {
         filter: usize,
         newton: usize,
+        fixed: usize,
         double_double: usize,
         integers: usize,
     }
@@ -210,17 +329,35 @@ mod tests {
                 }
                 Line::Unsure => None,
             };
-            // The stages agree, where an earlier one dares to decide.
+            // The stages agree, whenever an earlier one decides.
             let integers = integer_roots(sphere, ray);
+            decisions();
+            assert_eq!(roots(sphere, ray), integers, "{sphere:?} {ray:?}");
+            let [double_double, fixed, any_size] = decisions();
             if let Some(t) = newton {
                 self.newton += 1;
                 let Roots::Two(near, far) = integers else { panic!("{sphere:?} {ray:?}") };
                 assert!(t == near || t == far, "{sphere:?} {ray:?}");
-            } else if let Some(roots) = double_double_roots(sphere, ray) {
-                self.double_double += 1;
-                assert_eq!(roots, integers, "{sphere:?} {ray:?}");
             } else {
-                self.integers += 1;
+                self.double_double += double_double;
+                self.fixed += fixed;
+                self.integers += any_size;
+            }
+            for roots in [
+                double_double_roots(sphere, ray),
+                Equation::<1, 2, 4>::new(sphere, ray).map(|equation| equation.roots()),
+                Equation::<2, 4, 8>::new(sphere, ray).map(|equation| equation.roots()),
+            ] {
+                assert!(roots.is_none_or(|roots| roots == integers), "{sphere:?} {ray:?}: {roots:?}");
+            }
+            for start in [0.0, -0.0, f64::NEG_INFINITY, 1.0] {
+                let within = start..f64::INFINITY;
+                let expected = match integers {
+                    Roots::One(t) | Roots::Two(t, _) if holds(&within, t) => Some(t),
+                    Roots::Two(_, t) if holds(&within, t) => Some(t),
+                    _ => None,
+                };
+                assert_eq!(closest(sphere, ray, within), expected, "{sphere:?} {ray:?} from {start:?}");
             }
         }
     }
@@ -236,7 +373,7 @@ mod tests {
             stages.count(&sphere, &ray);
         }
         assert!(stages.filter > 1000 && stages.newton > 1000, "{stages:?}");
-        assert_eq!(stages.double_double + stages.integers, 0, "{stages:?}");
+        assert_eq!(stages.fixed + stages.double_double + stages.integers, 0, "{stages:?}");
     }
 
     #[test]
@@ -245,18 +382,23 @@ mod tests {
         for i in 0..4096 {
             // grazing within some rounding errors, from more and more radii away
             let radius = 2f64.powi(-(i % 30));
-            let (origin, direction) = (vector(state), vector(state));
+            let (mut origin, direction) = (vector(state), vector(state));
+            if i % 4 == 0 {
+                origin.z *= 2f64.powi(-80); // no window of one limb
+            }
             let side = direction.cross(vector(state)).normalize();
             let off = radius * (1.0 + 2f64.powi(-(20 + i % 40)) * random(state));
             let center = origin + direction + off * side;
             stages.count(&Sphere::new(center, radius).unwrap(), &Ray::new(origin, direction).unwrap());
         }
-        // exactly tangent
-        for i in 0..64 {
+        // Exactly tangent, with numbers in a window of one limb, of two, and in none.
+        for i in 0..192 {
             let sphere = Sphere::new(DVec3::ZERO, f64::from(i)).unwrap();
-            stages.count(&sphere, &Ray::new(DVec3::new(-100.0, f64::from(i), 0.0), DVec3::X).unwrap());
+            let origin =
+                DVec3::new(-[100.0, 2f64.powi(80), 2f64.powi(200)][i as usize % 3], f64::from(i), 0.0);
+            stages.count(&sphere, &Ray::new(origin, DVec3::X).unwrap());
         }
-        let all = [stages.filter, stages.newton, stages.double_double, stages.integers];
+        let all = [stages.filter, stages.newton, stages.fixed, stages.double_double, stages.integers];
         assert!(all.iter().all(|&n| n > 60), "{stages:?}");
     }
 
@@ -272,6 +414,9 @@ mod tests {
             let stage = if (w.length_squared() - 1.0).abs() > 14.0 * U {
                 0
             } else {
+                for side in [fixed_side::<1, 2>(&sphere, point), fixed_side::<2, 4>(&sphere, point)] {
+                    assert!(side.is_none_or(|side| side == integer_side(&sphere, point)));
+                }
                 match double_double_side(&sphere, point) {
                     Some(sign) => {
                         assert_eq!(sign, integer_side(&sphere, point));
@@ -288,6 +433,8 @@ mod tests {
             let sphere = Sphere::new(DVec3::ZERO, 3.0 * size).unwrap();
             let point = size * DVec3::new(1.0, 2.0, -2.0);
             assert_eq!(double_double_side(&sphere, point), None);
+            assert_eq!(fixed_side::<1, 2>(&sphere, point), Some(Ordering::Equal));
+            assert_eq!(side(&sphere, point), Side::On);
             assert_eq!(integer_side(&sphere, point), Ordering::Equal);
             counts[2] += 1;
         }

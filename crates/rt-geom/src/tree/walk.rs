@@ -90,7 +90,7 @@ impl Best {
         ray: &PreparedRay,
     ) -> bool {
         let closer = bounds.high < self.bounds.low
-            || (bounds.low <= self.bounds.high && self.settle(place, tree, ray));
+            || (bounds.low <= self.bounds.high && self.settle(bounds, place, tree, ray));
         if closer && bounds.high < self.bounds.low {
             *self = Self { bounds, place };
             prefetch_lines(tree.index.as_ptr().wrapping_add(place), 1);
@@ -101,10 +101,9 @@ impl Best {
     /// The bounds overlap: compares the correctly rounded parameters, then the indices.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self, place: usize, tree: &SphereTree, ray: &PreparedRay) -> bool {
-        let rounded = |place: usize| tree.rounded(place, ray).expect("a candidate is a hit");
+    fn settle(&mut self, bounds: Candidate, place: usize, tree: &SphereTree, ray: &PreparedRay) -> bool {
         if !self.exists() {
-            let t = rounded(place);
+            let t = tree.rounded_within(bounds, place, ray);
             *self = Self { bounds: Candidate { low: t, high: t }, place };
             return true;
         }
@@ -116,7 +115,8 @@ impl Best {
             }
             return lower;
         }
-        let (new, old) = (rounded(place), rounded(self.place));
+        let new = tree.rounded_within(bounds, place, ray);
+        let old = tree.rounded_within(self.bounds, self.place, ray);
         let closer = new
             .total_cmp(&old)
             .then(if lower { std::cmp::Ordering::Less } else { std::cmp::Ordering::Greater })
@@ -132,12 +132,7 @@ impl Best {
         if !self.exists() {
             return None;
         }
-        let Candidate { low, high } = self.bounds;
-        let t = if low.to_bits() == high.to_bits() {
-            low
-        } else {
-            tree.rounded(self.place, ray).expect("a candidate is a hit")
-        };
+        let t = tree.rounded_within(self.bounds, self.place, ray);
         Some(Hit { index: tree.index[self.place] as usize, t })
     }
 }
@@ -353,6 +348,16 @@ impl SphereTree {
         match self.spheres.get(place) {
             Some(&sphere) => Shape::Sphere(sphere),
             None => Shape::Triangle(self.triangles[place - self.spheres.len()]),
+        }
+    }
+
+    /// The correctly rounded parameter of a candidate, which its bounds tell if they are equal.
+    #[inline(always)]
+    fn rounded_within(&self, Candidate { low, high }: Candidate, place: usize, ray: &PreparedRay) -> f64 {
+        if low.to_bits() == high.to_bits() {
+            low
+        } else {
+            self.rounded(place, ray).expect("a candidate is a hit")
         }
     }
 

@@ -1,14 +1,18 @@
-//! The stages after the filter: double-double and integers.
+//! The stages after the filter: fixed-point numbers, double-double, integers of any size.
+//!
+//! Fixed-point comes before double-double here: all three volumes cost less in it, and it always decides.
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
-use rt_math::exact::{DoubleDouble, Dyadic};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, Window};
 
 use super::{FARTHEST, Triangle, U, Verdict};
 use crate::Ray;
 use crate::ray::{holds, larger, max_abs};
+use crate::stage::{Stage, decided};
 
 /// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 6).
 const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
@@ -37,21 +41,84 @@ pub(crate) fn dot<const FMA: bool>(v: &Numbers<FMA>, w: &Numbers<FMA>) -> Double
     v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
 }
 
-/// Returns the hit's `t` if it is in the range, whatever it takes.
+/// Returns the hit's `t` if it is in the range; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn closest(triangle: &Triangle, ray: &Ray, within: Range<f64>) -> Option<f64> {
-    let t = line_verdict(triangle, ray).is_hit().then(|| integer_t(triangle, ray))?;
+    let t = ask(triangle, ray, |volumes| verdict(volumes.signs())?.is_hit().then(|| volumes.t()))?;
     holds(&within, t).then_some(t)
 }
 
-/// Returns how the whole line meets the triangle, whatever it takes.
+/// Returns how the whole line meets the triangle; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn line_verdict(triangle: &Triangle, ray: &Ray) -> Verdict {
-    let signs = double_double_signs(triangle, ray).unwrap_or_else(|| Volumes::new(triangle, ray).signs());
-    verdict(signs)
+    ask(triangle, ray, |volumes| verdict(volumes.signs()))
         .unwrap_or_else(|| if is_degenerate(triangle) { Verdict::Degenerate } else { Verdict::Parallel })
+}
+
+/// Returns the correctly rounded weights if the line meets the triangle.
+#[cold]
+#[inline(never)]
+pub(super) fn exact_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+    ask(triangle, ray, |volumes| verdict(volumes.signs())?.is_hit().then(|| volumes.weights()))
+}
+
+/// Returns the correctly rounded `t` if it is in the range, and the weights.
+#[cold]
+#[inline(never)]
+pub(super) fn closest_with_weights(
+    triangle: &Triangle,
+    ray: &Ray,
+    within: Range<f64>,
+) -> Option<(f64, [f64; 3])> {
+    ask(triangle, ray, |volumes| {
+        let t = verdict(volumes.signs())?.is_hit().then(|| volumes.t())?;
+        holds(&within, t).then(|| (t, volumes.weights()))
+    })
+}
+
+/// Whether the turned ray crosses the triangle: [`Triangle::crosses`]; slow path, always decides.
+#[cold]
+#[inline(never)]
+pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
+    ask(triangle, ray, |volumes| {
+        let (height, [_, _, _, slope]) = (volumes.height_sign(), volumes.signs());
+        // Height zero: the origin is in the plane, or there is no plane. Slope zero: two of the volumes have opposite signs.
+        height != Ordering::Equal && height == slope && volumes.turned_signs() == [slope; 3]
+    })
+}
+
+/// What exact arithmetic, of whatever size, knows of a ray and a triangle.
+trait Volumes {
+    /// The signs of the three volumes and of their sum.
+    fn signs(&self) -> [Ordering; 4];
+
+    /// The signs of the volumes for the direction `d + (e, e², e³)` with an infinitely small `e > 0`.
+    fn turned_signs(&self) -> [Ordering; 3];
+
+    /// The sign of `a . b x c`, six times the volume that the triangle spans with the origin of the ray.
+    fn height_sign(&self) -> Ordering;
+
+    /// The correctly rounded `t` where the line meets the plane; the sum of the volumes must not be zero.
+    fn t(&self) -> f64;
+
+    /// The volumes divided by their sum, correctly rounded; it must not be zero.
+    fn weights(&self) -> [f64; 3];
+}
+
+/// Asks the smallest exact arithmetic that holds the numbers.
+#[inline(always)]
+fn ask<R>(triangle: &Triangle, ray: &Ray, question: impl FnOnce(&dyn Volumes) -> R) -> R {
+    if let Some(volumes) = FixedVolumes::<1, 2, 3>::new(triangle, ray) {
+        decided(Stage::Fixed);
+        question(&volumes)
+    } else if let Some(volumes) = FixedVolumes::<2, 4, 6>::new(triangle, ray) {
+        decided(Stage::Fixed);
+        question(&volumes)
+    } else {
+        question(&WideVolumes { triangle, ray, integers: OnceCell::new() })
+    }
 }
 
 /// The verdict from the signs of the volumes and of their sum; `None` if the sum is zero.
@@ -91,77 +158,148 @@ fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> 
     Some([certain(u, error)?, certain(v, error)?, certain(w, error)?, sum])
 }
 
+/// The volumes in fixed-point numbers, where all points lie in one window and the direction in another: coordinates of `N`
+/// limbs, areas of `A = 2 N`, volumes of `V = 3 N`.
+struct FixedVolumes<const N: usize, const A: usize, const V: usize> {
+    /// The first vertex relative to the origin of the ray.
+    vertex: [Fixed<N>; 3],
+    /// `b x c`, `c x a`, `a x b`.
+    planes: [[Fixed<A>; 3]; 3],
+    /// `u`, `v`, `w`.
+    volumes: [Fixed<V>; 3],
+    /// The height over the sum of the volumes times `2^exponent` is `t`.
+    exponent: i32,
+}
+
+impl<const N: usize, const A: usize, const V: usize> FixedVolumes<N, A, V> {
+    #[inline(always)]
+    fn new(triangle: &Triangle, ray: &Ray) -> Option<Self> {
+        let points = [ray.origin(), triangle.vertices[0], triangle.vertices[1], triangle.vertices[2]];
+        let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
+        let direction_window = Window::<N>::around(&ray.direction().to_array())?;
+        let [o, a, b, c] = points.map(|point| point.to_array().map(|x| window.fixed(x)));
+        let [a, b, c] = [a, b, c].map(|point| Fixed::difference(&point, &o));
+        let planes = [Fixed::cross(&b, &c), Fixed::cross(&c, &a), Fixed::cross(&a, &b)];
+        let d = ray.direction().to_array().map(|x| direction_window.fixed(x));
+        let volumes = [Fixed::dot(&planes[0], &d), Fixed::dot(&planes[1], &d), Fixed::dot(&planes[2], &d)];
+        Some(Self { vertex: a, planes, volumes, exponent: window.exponent() - direction_window.exponent() })
+    }
+
+    #[inline(always)]
+    fn sum(&self) -> Fixed<V> {
+        self.volumes[0] + self.volumes[1] + self.volumes[2]
+    }
+
+    #[inline(always)]
+    fn height(&self) -> Fixed<V> {
+        Fixed::dot(&self.planes[0], &self.vertex)
+    }
+}
+
+impl<const N: usize, const A: usize, const V: usize> Volumes for FixedVolumes<N, A, V> {
+    fn signs(&self) -> [Ordering; 4] {
+        let [u, v, w] = &self.volumes;
+        [u.sign(), v.sign(), w.sign(), self.sum().sign()]
+    }
+
+    fn turned_signs(&self) -> [Ordering; 3] {
+        [0, 1, 2].map(|i| {
+            self.planes[i].iter().fold(self.volumes[i].sign(), |sign, part| sign.then_with(|| part.sign()))
+        })
+    }
+
+    fn height_sign(&self) -> Ordering {
+        self.height().sign()
+    }
+
+    fn t(&self) -> f64 {
+        Fixed::quotient(&self.height(), &self.sum(), self.exponent)
+    }
+
+    fn weights(&self) -> [f64; 3] {
+        let sum = self.sum();
+        self.volumes.map(|volume| Fixed::quotient(&volume, &sum, 0))
+    }
+}
+
+/// The volumes of numbers that no window holds: signs in double-double where that is certain, all else in integers of any
+/// size.
+struct WideVolumes<'a> {
+    triangle: &'a Triangle,
+    ray: &'a Ray,
+    integers: OnceCell<IntegerVolumes>,
+}
+
+impl WideVolumes<'_> {
+    fn integers(&self) -> &IntegerVolumes {
+        self.integers.get_or_init(|| {
+            decided(Stage::Integers);
+            IntegerVolumes::new(self.triangle, self.ray)
+        })
+    }
+}
+
+impl Volumes for WideVolumes<'_> {
+    fn signs(&self) -> [Ordering; 4] {
+        if let Some(signs) = double_double_signs(self.triangle, self.ray) {
+            decided(Stage::DoubleDouble);
+            return signs;
+        }
+        let [u, v, w] = &self.integers().volumes;
+        [u.sign(), v.sign(), w.sign(), self.integers().sum().sign()]
+    }
+
+    fn turned_signs(&self) -> [Ordering; 3] {
+        let IntegerVolumes { planes, volumes, .. } = self.integers();
+        [0, 1, 2]
+            .map(|i| planes[i].iter().fold(volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
+    }
+
+    fn height_sign(&self) -> Ordering {
+        self.integers().height().sign()
+    }
+
+    fn t(&self) -> f64 {
+        Integer::quotient(&self.integers().height(), &self.integers().sum())
+    }
+
+    fn weights(&self) -> [f64; 3] {
+        let sum = self.integers().sum();
+        [0, 1, 2].map(|i| Integer::quotient(&self.integers().volumes[i], &sum))
+    }
+}
+
 /// Limbs for what a ray and a triangle span, of degree three: multiples of 2^-3222 below 2^3079 take 101, and their
 /// quotients two more.
 type Integer = Dyadic<104>;
 type IntegerVector = [Integer; 3];
 
-/// The exact volumes, with what they come from.
-struct Volumes {
-    /// The vertices relative to the origin of the ray.
-    vertices: [IntegerVector; 3],
+/// The volumes in integers of any size.
+struct IntegerVolumes {
+    /// The first vertex relative to the origin of the ray.
+    vertex: IntegerVector,
     /// `b x c`, `c x a`, `a x b`.
     planes: [IntegerVector; 3],
     /// `u`, `v`, `w`.
     volumes: [Integer; 3],
 }
 
-impl Volumes {
+impl IntegerVolumes {
     fn new(triangle: &Triangle, ray: &Ray) -> Self {
         let direction = ray.direction().to_array().map(Integer::from_f64);
-        let vertices = triangle.vertices.map(|vertex| integer_difference(vertex, ray.origin()));
-        let [a, b, c] = &vertices;
-        let planes = [integer_cross(b, c), integer_cross(c, a), integer_cross(a, b)];
+        let [a, b, c] = triangle.vertices.map(|vertex| integer_difference(vertex, ray.origin()));
+        let planes = [integer_cross(&b, &c), integer_cross(&c, &a), integer_cross(&a, &b)];
         let volumes = [0, 1, 2].map(|i| integer_dot(&planes[i], &direction));
-        Self { vertices, planes, volumes }
+        Self { vertex: a, planes, volumes }
     }
 
     fn sum(&self) -> Integer {
         &self.volumes[0] + &self.volumes[1] + &self.volumes[2]
     }
 
-    fn signs(&self) -> [Ordering; 4] {
-        let [u, v, w] = &self.volumes;
-        [u.sign(), v.sign(), w.sign(), self.sum().sign()]
-    }
-
-    /// Six times the volume that the triangle spans with the origin of the ray: `a . b x c`.
     fn height(&self) -> Integer {
-        integer_dot(&self.planes[0], &self.vertices[0])
+        integer_dot(&self.planes[0], &self.vertex)
     }
-}
-
-/// Returns the correctly rounded `t` where the line meets the plane; the line must not be parallel to it.
-#[cold]
-#[inline(never)]
-pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
-    let volumes = Volumes::new(triangle, ray);
-    Integer::quotient(&volumes.height(), &volumes.sum())
-}
-
-/// Returns the correctly rounded weights if the line meets the triangle.
-#[cold]
-#[inline(never)]
-pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
-    let volumes = Volumes::new(triangle, ray);
-    let sum = volumes.sum();
-    verdict(volumes.signs())?.is_hit().then(|| volumes.volumes.map(|volume| Integer::quotient(&volume, &sum)))
-}
-
-/// Whether the turned ray crosses the triangle: [`Triangle::crosses`], whatever it takes.
-#[cold]
-#[inline(never)]
-pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
-    let volumes = Volumes::new(triangle, ray);
-    // The sign of (d + (e, e², e³)) . v for an infinitely small e > 0.
-    let turned = |volume: &Integer, v: &IntegerVector| {
-        [volume, &v[0], &v[1], &v[2]].map(Integer::sign).into_iter().fold(Ordering::Equal, Ordering::then)
-    };
-    let (height, slope) = (volumes.height().sign(), volumes.sum().sign());
-    // Height zero: the origin is in the plane, or there is no plane. Slope zero: two of the volumes have opposite signs.
-    height != Ordering::Equal
-        && height == slope
-        && (0..3).all(|i| turned(&volumes.volumes[i], &volumes.planes[i]) == slope)
 }
 
 /// Limbs for the normal, of degree two: a multiple of 2^-2148 below 2^2052.
@@ -172,11 +310,20 @@ fn integer_normal(triangle: &Triangle) -> [NormalInteger; 3] {
     integer_cross(&integer_difference(b, a), &integer_difference(c, a))
 }
 
-/// Whether the triangle has no area, in integers.
+/// Whether the triangle has no area; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(crate) fn is_degenerate(triangle: &Triangle) -> bool {
-    integer_normal(triangle).iter().all(|part| part.sign() == Ordering::Equal)
+    fixed_is_degenerate::<1, 2>(triangle)
+        .or_else(|| fixed_is_degenerate::<2, 4>(triangle))
+        .unwrap_or_else(|| integer_normal(triangle).iter().all(|part| part.sign() == Ordering::Equal))
+}
+
+fn fixed_is_degenerate<const N: usize, const A: usize>(triangle: &Triangle) -> Option<bool> {
+    let window = Window::<N>::around(triangle.vertices.map(|vertex| vertex.to_array()).as_flattened())?;
+    let [a, b, c] = triangle.vertices.map(|vertex| vertex.to_array().map(|x| window.fixed(x)));
+    let normal = Fixed::<A>::cross(&Fixed::difference(&b, &a), &Fixed::difference(&c, &a));
+    Some(normal.iter().all(|part| part.sign() == Ordering::Equal))
 }
 
 /// Returns `(b - a) x (c - a)` times a power of two, with a largest component near 1, or `None` if it is zero.
@@ -226,6 +373,29 @@ pub(crate) fn integer_dot<const LIMBS: usize>(
     &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
 }
 
+/// The correctly rounded `t`, by integers of any size alone: the oracle of the other stages.
+#[cfg(test)]
+pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
+    let volumes = IntegerVolumes::new(triangle, ray);
+    Integer::quotient(&volumes.height(), &volumes.sum())
+}
+
+/// The correctly rounded weights, likewise.
+#[cfg(test)]
+pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+    let volumes = IntegerVolumes::new(triangle, ray);
+    let sum = volumes.sum();
+    verdict(integer_signs(&volumes))?
+        .is_hit()
+        .then(|| [0, 1, 2].map(|i| Integer::quotient(&volumes.volumes[i], &sum)))
+}
+
+#[cfg(test)]
+fn integer_signs(volumes: &IntegerVolumes) -> [Ordering; 4] {
+    let [u, v, w] = &volumes.volumes;
+    [u.sign(), v.sign(), w.sign(), volumes.sum().sign()]
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::Line;
@@ -256,6 +426,8 @@ mod tests {
     #[derive(Debug, Default)]
     struct Stages {
         filter: usize,
+        fixed: usize,
+        fixed_twice: usize,
         double_double: usize,
         integers: usize,
         rounded: usize,
@@ -264,8 +436,8 @@ mod tests {
 
     impl Stages {
         fn count(&mut self, triangle: &Triangle, ray: &Ray) {
-            let exact = Volumes::new(triangle, ray);
-            let expected = verdict(exact.signs()).unwrap_or(Verdict::Parallel);
+            let exact = IntegerVolumes::new(triangle, ray);
+            let expected = verdict(integer_signs(&exact)).unwrap_or(Verdict::Parallel);
             match triangle.line::<false>(ray) {
                 Line::Misses => {
                     self.filter += 1;
@@ -288,14 +460,38 @@ mod tests {
                     }
                 }
                 Line::Unsure => {
-                    if let Some(signs) = double_double_signs(triangle, ray) {
+                    let signs = if let Some(fixed) = FixedVolumes::<1, 2, 3>::new(triangle, ray) {
+                        self.fixed += 1;
+                        fixed.signs()
+                    } else if let Some(fixed) = FixedVolumes::<2, 4, 6>::new(triangle, ray) {
+                        self.fixed_twice += 1;
+                        fixed.signs()
+                    } else if let Some(signs) = double_double_signs(triangle, ray) {
                         self.double_double += 1;
-                        assert_eq!(signs, exact.signs(), "{triangle:?} {ray:?}");
+                        signs
                     } else {
                         self.integers += 1;
+                        return;
+                    };
+                    assert_eq!(signs, integer_signs(&exact), "{triangle:?} {ray:?}");
+                    if let Some(signs) = double_double_signs(triangle, ray) {
+                        assert_eq!(signs, integer_signs(&exact), "{triangle:?} {ray:?}");
                     }
                 }
             }
+            // What the exact stages give is what integers of any size give.
+            let hit = expected.is_hit();
+            let everywhere = f64::NEG_INFINITY..f64::INFINITY;
+            let t = hit.then(|| integer_t(triangle, ray));
+            let same = |found: Option<f64>| found.map(f64::to_bits) == t.map(f64::to_bits);
+            assert!(same(closest(triangle, ray, everywhere.clone())), "{triangle:?} {ray:?}");
+            let weights = integer_weights(triangle, ray);
+            assert_eq!(exact_weights(triangle, ray), weights, "{triangle:?} {ray:?}");
+            assert_eq!(
+                closest_with_weights(triangle, ray, everywhere),
+                t.zip(weights),
+                "{triangle:?} {ray:?}"
+            );
         }
     }
 
@@ -315,23 +511,30 @@ mod tests {
     fn every_stage_decides_hard_cases() {
         let (mut stages, state) = (Stages::default(), &mut 2);
         for i in 0..4096 {
-            // within less and less of an edge
+            // Within less and less of an edge, with numbers in a window of one limb, of two, and in none.
             let (v, w) = (random(state), 2f64.powi(-(i % 60)) * random(state));
-            let (triangle, ray) = case(state, v, w);
-            stages.count(&triangle, &ray);
+            let [mut a, b, c] = [vector(state), vector(state), vector(state)];
+            a.z *= [1.0, 1.0, 2f64.powi(-40), 2f64.powi(-200)][i as usize % 4];
+            let origin = 5.0 * vector(state);
+            let direction = a + v * (b - a) + w * (c - a) - origin;
+            stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, direction).unwrap());
         }
         for k in 0..64 {
             // exactly through an edge
             let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
             let origin = DVec3::new(f64::from(k) / 64.0, 0.0, 1.0);
             stages.count(&triangle, &Ray::new(origin, DVec3::NEG_Z).unwrap());
+            // The same in a plane that no window holds together with the origin.
+            let [a, b, c] = triangle.vertices.map(|vertex| vertex + DVec3::new(0.0, 0.0, 2f64.powi(-300)));
+            stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, DVec3::NEG_Z).unwrap());
             // t is halfway between two doubles
             let origin = DVec3::new(0.25, 0.25, 1.0 + f64::from(k) * f64::EPSILON);
             let plane = -(f64::EPSILON / 2.0);
             let [a, b, c] = triangle.vertices.map(|vertex| vertex + DVec3::new(0.0, 0.0, plane));
             stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, DVec3::NEG_Z).unwrap());
         }
-        let all = [stages.filter, stages.double_double, stages.integers, stages.rounded, stages.not_rounded];
+        let Stages { filter, fixed, fixed_twice, double_double, integers, rounded, not_rounded } = stages;
+        let all = [filter, fixed, fixed_twice, double_double, integers, rounded, not_rounded];
         assert!(all.iter().all(|&n| n >= 60), "{stages:?}");
     }
 }

@@ -61,7 +61,7 @@ fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f6
         }
         Line::Unsure => None,
     };
-    weights.or_else(|| exact::integer_weights(triangle, ray))
+    weights.or_else(|| exact::exact_weights(triangle, ray))
 }
 
 fma_dispatch! {
@@ -94,11 +94,12 @@ fn both_kernel<const FMA: bool>(
         }
         Line::Unsure => (None, None),
     };
-    let t = match t {
-        Some(t) => holds(&within, t).then_some(t)?,
-        None => exact::closest(triangle, ray, within)?,
-    };
-    Some((t, weights.or_else(|| exact::integer_weights(triangle, ray))?))
+    match (t, weights) {
+        (Some(t), _) if !holds(&within, t) => None,
+        (Some(t), Some(weights)) => Some((t, weights)),
+        (Some(t), None) => Some((t, exact::exact_weights(triangle, ray)?)),
+        (None, _) => exact::closest_with_weights(triangle, ray, within),
+    }
 }
 
 /// The solution in doubles and what is left over.
