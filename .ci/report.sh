@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # The report: a quick run must find the very errors that are stored, text and plots must follow from the JSON alone, and the
 # committed report must be what its JSON says. Times are not compared.
-# Where errors change on purpose, renew: cargo run --release -- report --quick --out DIR; cp DIR/report.json docs/report/quick.json
+# Where errors change on purpose, renew: cargo run --release -p report -- --quick --out DIR; cp DIR/report.json docs/report/quick.json
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-report() { cargo run --release --quiet -- report "$@"; }
+report() { cargo run --release --quiet -p report -- "$@"; }
 
 report --quick --out "$work/quick"
 report --from "$work/quick/report.json" --out "$work/again"

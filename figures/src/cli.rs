@@ -3,8 +3,7 @@
 //! stdout carries only what was asked for; progress, notes and errors go to stderr. Exit code 0: done, 1: could not,
 //! 2: wrong usage.
 
-use std::error::Error;
-use std::io::{self, BufRead, BufWriter, IsTerminal, Read, Write};
+use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -13,9 +12,10 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
 use crate::generate::{Ball, Rule};
+use crate::outcome::{Failure, exit_code, parsed, to_stdout};
 use crate::output::{self, Format, Target};
 use crate::tile::Tile;
-use crate::{convert, draw, generate, memory, report, stderr};
+use crate::{convert, draw, generate, memory};
 
 /// The largest number of pixels in a picture: 1.5 GiB of samples.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -95,8 +95,12 @@ enum Command {
         #[arg(long, value_name = "WxH", default_value = "1024x768")]
         size: PictureSize,
     },
-    /// Measure the speed and the error of every kernel beside the textbook's methods
-    Report(report::Options),
+    /// Moved: `cargo run --release -p report` measures speed against error
+    #[command(hide = true)]
+    Report {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+        rest: Vec<String>,
+    },
 }
 
 /// A scene that is made by a rule.
@@ -227,63 +231,11 @@ impl FromStr for Which {
     }
 }
 
-/// Why the program ends without having done its work.
-#[derive(Debug)]
-pub enum Failure {
-    /// It was asked for something that makes no sense.
-    Usage(String),
-    /// Something went wrong; the causes are told one after the other.
-    Failed(Box<dyn Error + Send + Sync>),
-    /// A check found these differences.
-    Different(Vec<String>),
-    /// Whoever reads stdout has had enough.
-    PipeClosed,
-}
-
-impl<E: Error + Send + Sync + 'static> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self::Failed(Box::new(error))
-    }
-}
-
 /// Runs the program with the arguments it was started with.
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
-        Err(error) if error.use_stderr() => {
-            stderr::tell_lines(&error.to_string());
-            return ExitCode::from(2);
-        }
-        // Not an error: help, or the version.
-        Err(help) => help.exit(),
-    };
-    match run(arguments) {
-        Ok(()) | Err(Failure::PipeClosed) => ExitCode::SUCCESS,
-        Err(Failure::Usage(message)) => {
-            stderr::tell(&format!("error: {message}"));
-            ExitCode::from(2)
-        }
-        Err(Failure::Failed(error)) => {
-            let mut message = error.to_string();
-            let mut cause = error.source();
-            while let Some(error) = cause {
-                // A wrapper whose text is its cause's would only repeat it.
-                let text = error.to_string();
-                if !message.ends_with(&text) {
-                    message = format!("{message}: {text}");
-                }
-                cause = error.source();
-            }
-            stderr::tell(&format!("error: {message}"));
-            ExitCode::FAILURE
-        }
-        Err(Failure::Different(differences)) => {
-            stderr::tell(&format!("error: {} differences from the stored report:", differences.len()));
-            for difference in differences {
-                stderr::tell(&difference);
-            }
-            ExitCode::FAILURE
-        }
+    match parsed() {
+        Ok(arguments) => exit_code(run(arguments)),
+        Err(code) => code,
     }
 }
 
@@ -307,7 +259,10 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Merge { output, tiles, format }) => draw::merge(&output, &tiles, format),
         Some(Command::Gen { piece, out }) => piece.write(&out),
         Some(Command::Tests { scene, size }) => draw::count_tests(&scene, size),
-        Some(Command::Report(options)) => report::run(&options),
+        Some(Command::Report { rest }) => Err(Failure::Usage(format!(
+            "the report is a program of its own: `cargo run --release -p report{}`",
+            if rest.is_empty() { String::new() } else { format!(" -- {}", rest.join(" ")) }
+        ))),
     }
 }
 
@@ -360,26 +315,5 @@ fn ask() -> Result<Which, Failure> {
         _ => Err(Failure::Usage(format!(
             "expected the number of a figure, 1 to 6, or \"all\", found {answer:?}"
         ))),
-    }
-}
-
-/// Writes to stdout what was asked for.
-///
-/// # Errors
-/// [`Failure::PipeClosed`] if nobody reads it any more, else the failed write.
-pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
-    stream_to_stdout(|out| out.write_all(bytes))
-}
-
-/// Writes to stdout what `write` does.
-///
-/// # Errors
-/// As [`to_stdout`].
-pub fn stream_to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
-    match write(&mut out).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::PipeClosed),
-        Err(error) => Err(Failure::Failed(format!("cannot write to stdout: {error}").into())),
-        Ok(()) => Ok(()),
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rt_io::{Limits, read_image};
 
-use crate::cli::Failure;
+use crate::outcome::Failure;
 use crate::output::{Format, Target};
 use crate::{memory, stderr};
 

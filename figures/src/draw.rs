@@ -12,8 +12,9 @@ use rt_io::Pixmap;
 use serde::Serialize;
 
 use crate::camera::{Size, View};
-use crate::cli::{DrawOptions, Failure, PictureSize, to_stdout};
+use crate::cli::{DrawOptions, PictureSize};
 use crate::figure::Figure;
+use crate::outcome::{Failure, to_stdout};
 use crate::output::{Destination, Format, Target};
 use crate::render::{self, AHEAD, Renderer};
 use crate::scene::Scene;

@@ -1,6 +1,6 @@
 //! Asks for memory before a large amount of it is needed, so that a lack of it is an error and not the end of the process.
 
-use crate::cli::Failure;
+use crate::outcome::Failure;
 
 /// Checks that the system would give `bytes` more bytes for `what`; `remedy` says how to need less.
 ///

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use rt_io::ppm::{self, Encoding};
 use rt_io::{Pixmap, png, save_atomically};
 
-use crate::cli::{Failure, stream_to_stdout};
+use crate::outcome::{Failure, stream_to_stdout};
 
 /// The format of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -92,7 +92,7 @@ pub fn ending(path: &Path) -> Option<String> {
 ///
 /// # Errors
 /// Wrong usage, with the remedy.
-pub(crate) fn check_new_folder(folder: &Path) -> Result<(), Failure> {
+pub fn check_new_folder(folder: &Path) -> Result<(), Failure> {
     match ending(folder) {
         Some(ending) if !ends_in_slash(folder) && !folder.is_dir() => Err(Failure::Usage(format!(
             "{}: expected a folder, found a name that ends in .{ending}; write {0}/ if it is to be a folder",

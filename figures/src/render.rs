@@ -24,7 +24,7 @@ const TILE_HEIGHT: u32 = 8;
 const TILE_RAYS: u32 = 1 << 16;
 
 /// The ray's own range: from its origin on, without end.
-pub(crate) const AHEAD: Range<f64> = 0.0..f64::INFINITY;
+pub const AHEAD: Range<f64> = 0.0..f64::INFINITY;
 
 /// A scene made ready for rays: its objects in a tree.
 #[derive(Debug)]
@@ -97,7 +97,7 @@ impl Renderer {
     }
 
     /// The colour that a ray brings back.
-    pub(crate) fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
+    pub fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
         hit.map_or(self.background, |hit| self.seen(ray, hit).shaded(&self.lights))
     }
 

@@ -8,13 +8,13 @@ use std::io::{self, Write};
 use crate::text::escaped;
 
 /// Writes one line. Whatever in it is not to be shown but done by a terminal, a line end too, is escaped: `\u{1b}`.
-pub(crate) fn tell(line: &str) {
+pub fn tell(line: &str) {
     // Nobody is left to be told when stderr itself is gone.
     let _ = writeln!(io::stderr(), "{}", escaped(line));
 }
 
 /// Writes lines, each as [`tell`] does.
-pub(crate) fn tell_lines(lines: &str) {
+pub fn tell_lines(lines: &str) {
     lines.lines().for_each(tell);
 }
 

@@ -200,10 +200,8 @@ fn a_name_that_promises_what_is_not_written_is_refused_before_any_work() {
         ] {
             assert_eq!(refusal(folder.path(), arguments, "", 2), expected);
         }
-        for arguments in [&["all", "-o", &name][..], &["report", "--from", "no.json", "-o", &name]] {
-            let expected = format!("error: {name}: expected a folder, found a name that ends in ");
-            assert!(refusal(folder.path(), arguments, "", 2).starts_with(&expected));
-        }
+        let expected = format!("error: {name}: expected a folder, found a name that ends in ");
+        assert!(refusal(folder.path(), &["all", "-o", &name], "", 2).starts_with(&expected));
         stdout(folder.path(), &["convert", "in.ppm", &name, "--format", "ppm"]);
         assert_eq!(fs::read(folder.path().join(&name)).unwrap(), b"P6\n1 1\n255\n\x01\x02\x03");
         fs::remove_file(folder.path().join(&name)).unwrap();
@@ -228,7 +226,15 @@ fn a_name_that_promises_what_is_not_written_is_refused_before_any_work() {
         stdout(folder.path(), &["all", "--size", "8x6", "-o", out, "--quiet"]);
         assert_eq!(files(&folder.path().join("all.ppm")).len(), 6);
     }
-    refusal(folder.path(), &["report", "-o", "-"], "", 2);
+}
+
+#[test]
+fn the_report_names_its_new_command() {
+    let folder = folder();
+    assert_eq!(
+        refusal(folder.path(), &["report", "--quick", "--out", "x"], "", 2),
+        "error: the report is a program of its own: `cargo run --release -p report -- --quick --out x`\n"
+    );
 }
 
 #[test]

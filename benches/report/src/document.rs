@@ -14,6 +14,12 @@ pub(super) fn blocks(report: &Report) -> Vec<Block> {
         Block::Title("Speed against error".to_owned()),
         provenance(report),
         Block::Paragraph(savings(&report.trees)),
+        price(report),
+        Block::Paragraph(format!(
+            "What certainty costs: nanoseconds of this project's method, and × the textbook's time for the same cases. Dearest of \
+             ordinary magnitude: of all classes but {}.",
+            EXTREME.map(|class| format!("\"{class}\"")).join(", ")
+        )),
         which(report),
         Block::Paragraph(
             "Times are for ordinary cases, × is against the fastest method of the kernel. An error is the number of doubles \
@@ -119,6 +125,41 @@ fn savings(trees: &[Growth]) -> String {
         faster(halves),
         trees.iter().map(|row| row.different).sum::<usize>(),
     )
+}
+
+/// Classes whose numbers are not of ordinary magnitude.
+const EXTREME: [&str; 3] = ["subnormal", "whole range", "graded"];
+
+/// Returns the table of what this project's methods cost where it is easy, and where it is hard.
+fn price(report: &Report) -> Block {
+    let head = ["kernel", "ordinary", "dearest of ordinary magnitude", "dearest of all"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for kernel in &report.kernels {
+        let ours = kernel.methods.iter().filter(|method| method.ours);
+        let full = ours.filter(|method| method.has_values || kernel.values.is_none());
+        let textbook = kernel.methods.iter().find(|method| !method.ours && !method.name.ends_with("f32"));
+        for (method, textbook) in full.zip(std::iter::repeat(textbook)) {
+            let Some(textbook) = textbook else { continue };
+            let ratio =
+                |class: usize| method.classes[class].time.median / textbook.classes[class].time.median;
+            let told = |class: usize| {
+                let Cell { class: name, time, .. } = &method.classes[class];
+                let name = if class == 0 { String::new() } else { format!("{name}: ") };
+                format!("{name}{:.1} ns (× {:.1})", time.median, ratio(class))
+            };
+            let dearest = |of: &dyn Fn(&str) -> bool| {
+                let classes = (0..method.classes.len()).filter(|&class| of(&method.classes[class].class));
+                classes.max_by(|&a, &b| ratio(a).total_cmp(&ratio(b))).map_or("none".to_owned(), told)
+            };
+            let name = if method.name == "ours" {
+                kernel.name.clone()
+            } else {
+                format!("{} ({})", kernel.name, method.name.trim_start_matches("ours, "))
+            };
+            rows.push(vec![name, told(0), dearest(&|class| !EXTREME.contains(&class)), dearest(&|_| true)]);
+        }
+    }
+    Block::Table(rows)
 }
 
 /// Returns the table of the method to choose for each level of error.

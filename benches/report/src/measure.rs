@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::Class;
 use super::methods::{Answer, Method, Run};
+use super::progress;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,6 +143,7 @@ pub(super) fn kernel<const M: usize, const N: usize>(
     judge: fn(&[f64; M], Answer<N>) -> Answer<N>,
     effort: Effort,
 ) -> Kernel {
+    progress(name);
     let described = |text: &str| (!text.is_empty()).then(|| text.to_owned());
     let mut measured: Vec<Measured> = methods
         .iter()

@@ -3,7 +3,7 @@
 use dashu::integer::IBig;
 
 use super::{Big, dot, exact, is_negative, is_zero, long, quotient, root, rounded, sub, vector};
-use crate::report::methods::{Answer, MATERIAL};
+use crate::methods::{Answer, MATERIAL};
 
 /// A light: where it is and its colour.
 pub(in super::super) struct Lamp {

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{Group, Pictured};
-use crate::report::labels::Labels;
-use crate::report::plot::{escape, style};
+use crate::labels::Labels;
+use crate::plot::{escape, style};
 
 /// A method's sums over a group of scenes.
 pub(in super::super) struct Total {

@@ -169,7 +169,18 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let [origin, d, a, b, c] = [2, 1, 2, 2, 2].map(|reach| r.signed_vector(reach));
             join(&[&origin, &d, &a, &b, &c])
         }),
-        class("decimal coordinates", |r| {
+        class("mesh in hundredths", |r| {
+            // A ray in any direction at a triangle whose corners have two decimals, as many files of meshes have.
+            let origin = r.vector(5.0);
+            let [a, b, c] = [0; 3].map(|_| r.whole_vector(300).map(|x| x / 100.0));
+            let target = plus(
+                plus(a, plus(b, a, -1.0), 0.5 * r.within(0.0, 1.0)),
+                plus(c, a, -1.0),
+                0.5 * r.within(0.0, 1.0),
+            );
+            join(&[&origin, &plus(target, origin, -1.0), &a, &b, &c])
+        }),
+        class("in tenths, at an edge", |r| {
             // Rays at a point of an edge, all rounded to a tenth: nearly exact ties.
             let [a, b] = [0; 2].map(|_| r.whole_vector(99).map(|x| x / 10.0));
             let c = r.whole_vector(99).map(|x| x / 10.0);

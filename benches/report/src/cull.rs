@@ -12,7 +12,7 @@ use rt_geom::{Ray, Sphere};
 use super::measure::{Cell, Effort, Errors, Kernel, Measured, hexadecimal, take_turns};
 use super::methods::real::{Real, Vector, dot, dvec3};
 use super::random::{Random, cross, length, plus, size};
-use super::reference;
+use super::{progress, reference};
 
 /// Balls that are culled together.
 const WIDTH: usize = 16;
@@ -80,6 +80,7 @@ const METHODS: [Method; 6] = [
 
 /// Measures the culls.
 pub(super) fn cull(effort: Effort) -> Kernel {
+    progress("cull of a bounding volume");
     let mut measured: Vec<Measured> = METHODS
         .iter()
         .map(|method| Measured {

@@ -1,7 +1,10 @@
 //! Two reports compared: errors must be equal, times alike. And one report on its own: whether it has all that text needs.
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+
+use super::Report;
 use super::measure::Time;
-use super::{Report, base64};
 
 /// Returns one line for each difference: any in the errors, and times that differ by more than `factor`, if given.
 pub(super) fn differences(stored: &Report, new: &Report, factor: Option<f64>) -> Vec<String> {
@@ -101,7 +104,7 @@ pub(super) fn whole(report: &Report) -> Result<(), String> {
         return Err(format!("expected methods and pixels in {:?}", empty.scene));
     }
     for painted in pictures.iter().flat_map(|pictured| &pictured.methods) {
-        if painted.png.as_ref().is_some_and(|png| base64::decode(png).is_none()) {
+        if painted.png.as_ref().is_some_and(|png| BASE64_STANDARD.decode(png).is_err()) {
             return Err(format!("expected a picture in base64 for {:?}", painted.method));
         }
     }
@@ -113,7 +116,7 @@ pub(super) fn whole(report: &Report) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::measure::Effort;
+    use crate::measure::Effort;
 
     const TINY: Effort = Effort { cases: 8, rounds: 1, timing: 1, spheres: 100, rows: 6 };
 

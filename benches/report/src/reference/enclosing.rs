@@ -1,7 +1,7 @@
 //! The smallest sphere around spheres, by trying every set that could determine it.
 
 use super::{Big, dot, exact, is_negative, is_zero, long, roots, rounded, sub, vector};
-use crate::report::methods::{Answer, COUNT};
+use crate::methods::{Answer, COUNT};
 
 /// The radius of the smallest sphere around spheres: of all spheres that one to four of them determine, the smallest that
 /// holds the others. The verdict is 1: every sphere is inside.

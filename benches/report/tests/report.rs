@@ -1,4 +1,4 @@
-//! The command `report`: text and plots follow from the JSON alone, a check fails on a changed error, and what cannot be
+//! The program `report`: text and plots follow from the JSON alone, a check fails on a changed error, and what cannot be
 //! read is told by name.
 
 use std::fs;
@@ -6,10 +6,10 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// A quick run, stored.
-const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/report/quick.json");
+const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/report/quick.json");
 
-fn figures(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_figures")).args(arguments).output().expect("the program starts")
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_report")).args(arguments).output().expect("the program starts")
 }
 
 fn complaint(output: &Output) -> String {
@@ -48,9 +48,9 @@ fn smaller(folder: &Path) -> String {
 fn a_report_written_again_from_its_json_has_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     let (first, second) = (folder.path().join("first"), folder.path().join("second"));
-    assert!(figures(&["report", "--from", STORED, "--out", text(&first)]).status.success());
+    assert!(run(&["--from", STORED, "--out", text(&first)]).status.success());
     let json = first.join("report.json");
-    assert!(figures(&["report", "--from", text(&json), "--out", text(&second)]).status.success());
+    assert!(run(&["--from", text(&json), "--out", text(&second)]).status.success());
     let (first, second) = (contents(&first), contents(&second));
     let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
     for name in
@@ -64,7 +64,7 @@ fn a_report_written_again_from_its_json_has_the_same_bytes() {
 #[test]
 fn a_check_against_other_errors_fails_and_names_them() {
     let folder = tempfile::tempdir().expect("a folder for the test");
-    let output = figures(&["report", "--check", &smaller(folder.path())]);
+    let output = run(&["--check", &smaller(folder.path())]);
     assert_eq!(output.status.code(), Some(1));
     let complaint = complaint(&output);
     assert!(complaint.contains(" differences from the stored report:\n"), "{complaint}");
@@ -74,7 +74,7 @@ fn a_check_against_other_errors_fails_and_names_them() {
 #[test]
 fn a_quick_check_wants_a_quick_run() {
     let folder = tempfile::tempdir().expect("a folder for the test");
-    let output = figures(&["report", "--quick", "--check", &smaller(folder.path())]);
+    let output = run(&["--quick", "--check", &smaller(folder.path())]);
     assert_eq!(output.status.code(), Some(1));
     assert!(complaint(&output).ends_with("smaller.json: was not measured with --quick\n"));
 }
@@ -82,7 +82,7 @@ fn a_quick_check_wants_a_quick_run() {
 #[test]
 fn a_missing_report_is_named() {
     for option in ["--from", "--check"] {
-        let output = figures(&["report", option, "no/such/report.json"]);
+        let output = run(&[option, "no/such/report.json"]);
         assert_eq!(output.status.code(), Some(1), "{option}");
         let complaint = complaint(&output);
         assert!(complaint.starts_with("error: no/such/report.json: "), "{complaint}");
@@ -94,7 +94,7 @@ fn a_file_that_is_no_report_is_named_with_the_place() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     let path = folder.path().join("report.json");
     fs::write(&path, "{\n  \"machine\": 7\n}\n").expect("the file can be written");
-    let output = figures(&["report", "--from", text(&path), "--out", text(folder.path())]);
+    let output = run(&["--from", text(&path), "--out", text(folder.path())]);
     assert_eq!(output.status.code(), Some(1));
     let complaint = complaint(&output);
     assert!(complaint.contains("report.json: ") && complaint.contains("line 2"), "{complaint}");
@@ -126,7 +126,7 @@ fn a_report_with_a_hole_is_refused() {
         hole(&mut report);
         let path = folder.path().join("report.json");
         fs::write(&path, report.to_string()).expect("the file can be written");
-        let output = figures(&["report", "--from", text(&path), "--out", text(folder.path())]);
+        let output = run(&["--from", text(&path), "--out", text(folder.path())]);
         assert_eq!(output.status.code(), Some(1), "{expected}");
         let complaint = complaint(&output);
         assert!(complaint.contains(expected), "{complaint}");
@@ -139,7 +139,7 @@ fn a_folder_that_cannot_be_made_is_named() {
     let file = folder.path().join("file");
     fs::write(&file, "").expect("the file can be written");
     let below = file.join("report");
-    let output = figures(&["report", "--from", STORED, "--out", text(&below)]);
+    let output = run(&["--from", STORED, "--out", text(&below)]);
     assert_eq!(output.status.code(), Some(1));
     let complaint = complaint(&output);
     assert!(complaint.starts_with(&format!("error: {}: ", text(&below))), "{complaint}");
@@ -148,12 +148,14 @@ fn a_folder_that_cannot_be_made_is_named() {
 #[test]
 fn options_that_contradict_are_wrong_usage() {
     for arguments in [
-        &["report", "--quick", "--from", "report.json"][..],
-        &["report", "--check", "report.json", "--from", "report.json"],
-        &["report", "--factor", "2"],
-        &["report", "--check", "report.json", "--factor", "0.5"],
-        &["report", "--check", "report.json", "--factor", "nan"],
+        &["--quick", "--from", "report.json"][..],
+        &["--check", "report.json", "--from", "report.json"],
+        &["--factor", "2"],
+        &["--check", "report.json", "--factor", "0.5"],
+        &["--check", "report.json", "--factor", "nan"],
+        &["--from", "report.json", "--out", "-"],
+        &["--from", "report.json", "--out", "report.html"],
     ] {
-        assert_eq!(figures(arguments).status.code(), Some(2), "{arguments:?}");
+        assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }

@@ -6,12 +6,12 @@ use rayon::prelude::*;
 use rt_geom::{Ray, Sphere};
 
 use super::samples;
-use crate::camera::{Size, View};
-use crate::report::reference::{
+use crate::reference::{
     Big, Lamp, coordinates, cross, crossing, exact, long, nearest_root, point_at, rounded, shade, sub,
     weights,
 };
-use crate::scene::{Filter, Paint, Scene};
+use figures::camera::{Size, View};
+use figures::scene::{Filter, Paint, Scene};
 
 /// Returns the samples of a picture.
 pub(super) fn picture(scene: &Scene, view: &View) -> Vec<u8> {

@@ -3,9 +3,9 @@
 use glam::DVec3;
 use rt_geom::{Ray, Sphere, Triangle};
 
-use crate::report::methods::real::{Real, Vector, add, cross, normalized, scaled, sub};
-use crate::report::methods::{crossing, terms, textbook_coordinates, textbook_roots};
-use crate::scene::{Filter, Look, Paint, Scene};
+use crate::methods::real::{Real, Vector, add, cross, normalized, scaled, sub};
+use crate::methods::{crossing, terms, textbook_coordinates, textbook_roots};
+use figures::scene::{Filter, Look, Paint, Scene};
 
 /// A scene's objects in one precision.
 pub(super) struct Painter<'a, T> {

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use super::labels::Labels;
 use super::measure::{Effort, Time};
 use super::plot::style;
+use super::progress;
 use super::random::Random;
 
 /// What was measured of one method on one number of spheres.
@@ -60,6 +61,7 @@ pub(super) fn growth(effort: Effort) -> Vec<Growth> {
 }
 
 fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
+    progress(&format!("trees of {count} spheres"));
     let mut random = Random::new(count as u64);
     let radius = f_cbrt(0.1 * 8.0 / (count as f64 * 4.19));
     let mut point = |size: f64| DVec3::from_array(random.vector(size));

@@ -9,20 +9,22 @@ mod textbook;
 
 use std::hint::black_box;
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use figures::camera::{Size, View};
+use figures::figure::FIGURES;
+use figures::generate::sphereflake;
+use figures::render::{AHEAD, Renderer};
+use figures::scene::{Look, Scene};
+use figures::scene_file;
 use glam::DVec3;
 use rt_geom::{Hit, Ray, Sphere, SphereTree};
 use rt_io::{Pixmap, png};
 use rt_shade::color::{clamp, to_sample};
 use serde::{Deserialize, Serialize};
 
-use super::base64;
 use super::measure::{Effort, Time, take_turns};
-use crate::camera::{Size, View};
-use crate::figure::FIGURES;
-use crate::generate::sphereflake;
-use crate::render::{AHEAD, Renderer};
-use crate::scene::{Look, Scene};
-use crate::scene_file;
+use super::progress;
 use textbook::Painter;
 
 /// What was measured of all methods on one scene.
@@ -64,19 +66,19 @@ pub(super) const SHOWN: [&str; 2] = ["textbook", "ours, batch"];
 pub(super) const HARD: [(&str, &str, &str); 3] = [
     (
         "far sphere",
-        include_str!("../../../scenes/hard/far-sphere.toml"),
+        include_str!("../../../../figures/scenes/hard/far-sphere.toml"),
         "A ball of radius 1, thirty million away. The textbook's b² - ac is the difference of two numbers near 10^15: \
          rings, and an outline in steps.",
     ),
     (
         "shared edges",
-        include_str!("../../../scenes/hard/shared-edges.toml"),
+        include_str!("../../../../figures/scenes/hard/shared-edges.toml"),
         "Six triangles that leave no gap, seen so close that neighbouring pixels are neighbouring doubles. White is a crack: \
          a ray that passed between two triangles with a common edge.",
     ),
     (
         "huge ground",
-        include_str!("../../../scenes/hard/huge-ground.toml"),
+        include_str!("../../../../figures/scenes/hard/huge-ground.toml"),
         "Balls on a ground that is a sphere of radius 6·10^15. The textbook's roots cancel: the ground comes in rings, and not where it is.",
     ),
 ];
@@ -119,6 +121,7 @@ type Samples = Vec<u8>;
 type Draw<'a> = Box<dyn Fn() -> Samples + Sync + 'a>;
 
 fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) -> Pictured {
+    progress(name);
     let size = Size { width: effort.rows / 3 * 4, height: effort.rows, samples: 1 };
     let drawn = scene();
     let view = drawn.view(size).expect("these scenes have a camera that sees them");
@@ -147,7 +150,7 @@ fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) 
         let wrong = samples.chunks_exact(3).zip(truth.chunks_exact(3)).filter(|(is, should)| is != should);
         let wrong_pixels = wrong.count();
         let shown = group == Group::Hard && SHOWN.contains(method);
-        let png = shown.then(|| base64::encode(&as_png(samples, size)));
+        let png = shown.then(|| BASE64_STANDARD.encode(as_png(samples, size)));
         Painted { method: (*method).to_owned(), ours: *ours, wrong_pixels, time, png }
     });
     let methods = methods.collect();
