@@ -1,6 +1,6 @@
 //! Speed against error, for every kernel, from one command.
 //!
-//! Each kernel is run by several [`methods`] on several classes of [`cases`], judged by an exact [`reference`] and timed
+//! Each kernel is run by several [`methods`] on several classes of [`cases`], judged by an exact [`mod@reference`] and timed
 //! on the very same cases ([`measure`]). What was measured is written as JSON; text and plots are made from it alone.
 
 mod cases;
