@@ -333,6 +333,18 @@ fn a_tiff_in_narrow_lzw_tiles_is_read() {
 }
 
 #[test]
+fn a_png_with_a_piece_of_a_colour_in_its_palette_is_refused() {
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, 2, 1);
+    encoder.set_color(ColorType::Indexed);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_palette(vec![1, 2, 3, 4]);
+    encoder.write_header().unwrap().write_image_data(&[0, 1]).unwrap();
+    let expected = "broken PNG: a palette of 4 bytes, which are no whole colours";
+    assert!(message(&file).contains(expected), "{}", message(&file));
+}
+
+#[test]
 fn a_png_whose_checksum_is_wrong_is_refused() {
     let mut file = rgb_png(2, 1, &[1, 2, 3, 4, 5, 6]);
     let data = file.windows(4).position(|window| window == b"IDAT").unwrap() + 4;

@@ -30,6 +30,13 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     // To whole bytes; a palette is looked up; a transparent colour becomes alpha.
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(error)?;
+    // The decoder panics on the last one.
+    if let Some(palette) = &reader.info().palette
+        && !palette.len().is_multiple_of(3)
+    {
+        let what = format!("a palette of {} bytes, which are no whole colours", palette.len());
+        return Err(DecodeError::broken("PNG", what));
+    }
     let (color, depth) = reader.output_color_type();
     let channels = color.samples();
     let (kept, has_alpha) = match color {
