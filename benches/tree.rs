@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
-use rt_geom::{HalvingTree, Ray, Sphere, SphereTree};
+use rt_geom::{Bvh, HalvingTree, Ray, Sphere};
 
 const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 const RAYS: usize = 1024;
@@ -37,7 +37,7 @@ fn scene(n: usize) -> (Vec<Sphere>, Vec<Ray>) {
 fn closest(c: &mut Criterion) {
     for (n, name) in [(1_000, "1k_spheres"), (100_000, "100k_spheres")] {
         let (spheres, rays) = scene(n);
-        let tree = SphereTree::new(spheres.clone(), vec![]);
+        let tree = Bvh::new(spheres.clone(), vec![]);
         let mut group = c.benchmark_group("tree_closest");
         group.throughput(Throughput::Elements(RAYS as u64)).sample_size(10);
         group.bench_function(format!("single/{name}"), |b| {
@@ -65,7 +65,7 @@ fn closest(c: &mut Criterion) {
 
 fn any(c: &mut Criterion) {
     let (spheres, rays) = scene(100_000);
-    let tree = SphereTree::new(spheres, vec![]);
+    let tree = Bvh::new(spheres, vec![]);
     let mut group = c.benchmark_group("tree_any");
     group.throughput(Throughput::Elements(RAYS as u64)).sample_size(10);
     group.bench_function("single/100k_spheres", |b| {
@@ -82,7 +82,7 @@ fn build(c: &mut Criterion) {
     let (spheres, _) = scene(100_000);
     let mut group = c.benchmark_group("tree_build");
     group.throughput(Throughput::Elements(100_000)).sample_size(10);
-    group.bench_function("100k_spheres", |b| b.iter(|| SphereTree::new(black_box(&spheres).clone(), vec![])));
+    group.bench_function("100k_spheres", |b| b.iter(|| Bvh::new(black_box(&spheres).clone(), vec![])));
     group.finish();
 }
 

@@ -1,7 +1,7 @@
 //! Each slip of the report that `docs/errata.md` lists stays corrected.
 
 use glam::DVec3;
-use rt_geom::{Inside, Ray, Sphere, SphereTree, Triangle, inside_triangle, plane_by_pseudo_inverse};
+use rt_geom::{Bvh, Inside, Ray, Sphere, Triangle, inside_triangle, plane_by_pseudo_inverse};
 use rt_math::{Roots, reflect};
 use rt_shade::{Material, PointLight, Texture, phong, sphere_uv, texture_uv};
 
@@ -35,14 +35,14 @@ fn the_roots_have_a_minus_sign() {
 #[test]
 fn the_nearest_sphere_wins() {
     let spheres = vec![sphere(0.0, 0.0, -9.0, 1.0), sphere(0.0, 0.0, -3.0, 1.0), sphere(0.0, 0.0, -6.0, 1.0)];
-    let hit = SphereTree::new(spheres, Vec::new()).closest(&ray(DVec3::ZERO, DVec3::NEG_Z), AHEAD);
+    let hit = Bvh::new(spheres, Vec::new()).closest(&ray(DVec3::ZERO, DVec3::NEG_Z), AHEAD);
     assert_eq!(hit.map(|hit| (hit.index, hit.t)), Some((1, 2.0)));
 }
 
 #[test]
 fn equal_distances_go_to_the_lower_index() {
     let twice = vec![sphere(0.0, 0.0, -9.0, 1.0), sphere(0.0, 0.0, -3.0, 1.0), sphere(0.0, 0.0, -4.0, 2.0)];
-    let hit = SphereTree::new(twice, Vec::new()).closest(&ray(DVec3::ZERO, DVec3::NEG_Z), AHEAD);
+    let hit = Bvh::new(twice, Vec::new()).closest(&ray(DVec3::ZERO, DVec3::NEG_Z), AHEAD);
     assert_eq!(hit.map(|hit| (hit.index, hit.t)), Some((1, 2.0)));
 }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rt_geom::{Hit, Ray, Shape, SphereTree};
+use rt_geom::{Bvh, Hit, Ray, Shape};
 use rt_shade::color::{clamp, interpolate, to_sample};
 use rt_shade::{PointLight, SurfacePoint, phong_batch, texture_uv};
 
@@ -36,7 +36,7 @@ pub struct Renderer {
     sphere_looks: Vec<u32>,
     triangle_looks: Vec<u32>,
     vertex_colors: Vec<Option<[DVec3; 3]>>,
-    tree: SphereTree,
+    tree: Bvh,
 }
 
 /// Rows of a picture, and how many rays they took.
@@ -55,7 +55,7 @@ impl Renderer {
     pub fn new(scene: Scene) -> Self {
         let Scene { background, lights, looks, colors, spheres, triangles, .. } = scene;
         let Scene { sphere_looks, triangle_looks, vertex_colors, .. } = scene;
-        let tree = SphereTree::new(spheres, triangles);
+        let tree = Bvh::new(spheres, triangles);
         Self { background, lights, looks, colors, sphere_looks, triangle_looks, vertex_colors, tree }
     }
 

@@ -353,7 +353,7 @@ fn classes(count: usize) -> Vec<(&'static str, Vec<Case>)> {
 
 #[cfg(test)]
 mod tests {
-    use rt_geom::SphereTree;
+    use rt_geom::Bvh;
 
     use super::*;
 
@@ -405,7 +405,7 @@ mod tests {
         let restated: u32 = kept.iter().map(|kept| kept.count_ones()).sum();
         let tests = |case: &Case| {
             let sphere = |ball: [f64; 4]| Sphere::new(dvec3(&ball, 0), ball[3]).expect("radii are positive");
-            let tree = SphereTree::new(case.balls.map(sphere).to_vec(), Vec::new());
+            let tree = Bvh::new(case.balls.map(sphere).to_vec(), Vec::new());
             let ray = Ray::new(dvec3(&case.ray, 0), dvec3(&case.ray, 3)).expect("a valid ray");
             tree.closest_counted(&ray, 0.0..f64::INFINITY).1.tests
         };

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pxfm::f_cbrt;
-use rt_geom::{HalvingTree, Hit, Ray, Sphere, SphereTree};
+use rt_geom::{Bvh, HalvingTree, Hit, Ray, Sphere};
 use serde::{Deserialize, Serialize};
 
 use super::labels::Labels;
@@ -83,11 +83,11 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
         start.elapsed().as_secs_f64()
     };
     let halving = HalvingTree::new(spheres.clone(), Vec::new());
-    let tree = SphereTree::new(spheres.clone(), Vec::new());
+    let tree = Bvh::new(spheres.clone(), Vec::new());
     let builds = [
         0.0,
         timed(&|| drop(black_box(HalvingTree::new(spheres.clone(), Vec::new())))),
-        timed(&|| drop(black_box(SphereTree::new(spheres.clone(), Vec::new())))),
+        timed(&|| drop(black_box(Bvh::new(spheres.clone(), Vec::new())))),
     ];
 
     let plain = |ray: &Ray| {

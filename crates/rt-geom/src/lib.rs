@@ -1,5 +1,6 @@
 //! Spheres, triangles and the minimal bounding-sphere tree, with exact verdicts.
 
+mod bvh;
 mod enclosing;
 mod inside;
 mod plane;
@@ -7,15 +8,14 @@ mod ray;
 mod simd;
 mod sphere;
 mod stage;
-mod tree;
 mod triangle;
 
+pub use bvh::{Bvh, HalvingTree, Hit, Shape, Visits};
 pub use enclosing::{Enclosing, enclosing_sphere};
 pub use inside::{Inside, inside_triangle};
 pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
 pub use sphere::{Side, Sphere};
-pub use tree::{HalvingTree, Hit, Shape, SphereTree, Visits};
 pub use triangle::{Triangle, Verdict};
 
 // The reference of the tests, for those that look inside.

@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use rt_geom::{HalvingTree, Hit, Ray, Shape, Sphere, SphereTree, Triangle, enclosing_sphere};
+use rt_geom::{Bvh, HalvingTree, Hit, Ray, Shape, Sphere, Triangle, enclosing_sphere};
 
 const AHEAD: Range<f64> = 0.0..f64::INFINITY;
 
@@ -209,7 +209,7 @@ fn rays_per_scene(scene: &Scene) -> usize {
 fn tree_gives_the_plain_loops_hit() {
     let mut hits = 0;
     for scene in scenes() {
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         let rays = rays(&scene, rays_per_scene(&scene));
         let mut batch = vec![None; rays.len()];
         tree.closest_batch(&rays, AHEAD, &mut batch);
@@ -242,7 +242,7 @@ fn halving_tree_gives_the_plain_loops_hit() {
 #[test]
 fn every_range_gives_the_plain_loops_hit() {
     for scene in scenes() {
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         let halving = HalvingTree::new(scene.spheres.clone(), scene.triangles.clone());
         for ray in rays(&scene, rays_per_scene(&scene) / 40) {
             let t = closest_by_loop(&scene, &ray, &AHEAD).map_or(1.0, |hit| hit.t);
@@ -279,7 +279,7 @@ fn every_range_gives_the_plain_loops_hit() {
 fn every_instruction_set_gives_the_same_bits() {
     let mut tried = 0;
     for scene in scenes() {
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         let rays = rays(&scene, rays_per_scene(&scene) / 10);
         let mut expected = vec![None; rays.len()];
         for (hit, ray) in expected.iter_mut().zip(&rays) {
@@ -309,7 +309,7 @@ fn rays_of_extreme_exponents_are_answered_as_by_the_loop() {
     let random = &mut Random(3);
     let exponents = [-1074, -1022, -600, -300, -60, 0, 60, 300, 600, 1000];
     for scene in scenes() {
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         for _ in 0..200 {
             let power = |random: &mut Random| 2f64.powi(exponents[random.below(exponents.len())]);
             let origin = random.cube() * power(random);
@@ -327,7 +327,7 @@ fn rays_of_extreme_exponents_are_answered_as_by_the_loop() {
 #[test]
 fn every_bound_is_the_minimal_sphere_of_what_is_below() {
     for scene in scenes() {
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         tree.for_each_bound(|bound, indices| {
             assert!(!indices.is_empty(), "{}: a bound of nothing", scene.name);
             let mut below = Vec::new();
@@ -356,7 +356,7 @@ fn every_bound_is_the_minimal_sphere_of_what_is_below() {
 #[test]
 fn shapes_keep_their_index() {
     for scene in scenes() {
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         assert_eq!(tree.len(), scene.spheres.len() + scene.triangles.len());
         for (i, &sphere) in scene.spheres.iter().enumerate() {
             assert_eq!(tree.shape(i), Shape::Sphere(sphere), "{}", scene.name);
@@ -373,7 +373,7 @@ fn the_tree_is_the_same_for_any_number_of_threads() {
     let spheres: Vec<Sphere> = (0..20_000).map(|_| ball(random.cube(), 0.02 * random.unit())).collect();
     let tree = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let tree = pool.install(|| SphereTree::new(spheres.clone(), vec![]));
+        let tree = pool.install(|| Bvh::new(spheres.clone(), vec![]));
         let mut bounds = Vec::new();
         tree.for_each_bound(|bound, indices| bounds.push((bound.copied(), indices.to_vec())));
         bounds
@@ -401,7 +401,7 @@ fn no_input_overflows_the_stack_or_takes_forever() {
     let ray = Ray::new(DVec3::new(-3.0, 1.0, 1.0), DVec3::X).unwrap();
     for spheres in inputs {
         let expected = spheres.iter().map(|sphere| sphere.any(&ray, AHEAD)).filter(|hit| *hit).count() > 0;
-        let tree = SphereTree::new(spheres, vec![]);
+        let tree = Bvh::new(spheres, vec![]);
         assert_eq!(tree.any(&ray, AHEAD), expected);
         let hit = tree.closest(&ray, AHEAD);
         assert_eq!(hit.is_some(), expected);
@@ -435,9 +435,9 @@ fn equal_primitives_cost_what_one_does_and_the_lowest_index_answers() {
             (spheres, triangles, one, one_triangle),
         ];
         for (spheres, triangles, one, one_triangle) in scenes {
-            let tree = SphereTree::new(spheres.clone(), triangles.clone());
+            let tree = Bvh::new(spheres.clone(), triangles.clone());
             let halving = HalvingTree::new(spheres.clone(), triangles.clone());
-            let alone = SphereTree::new(one.clone(), one_triangle.clone());
+            let alone = Bvh::new(one.clone(), one_triangle.clone());
             let halving_alone = HalvingTree::new(one, one_triangle);
             for (i, &sphere) in spheres.iter().enumerate() {
                 assert_eq!(tree.shape(i), Shape::Sphere(sphere));
@@ -483,7 +483,7 @@ fn copies_of_spheres_with_one_center_are_left_out_too() {
     let random = &mut Random(13);
     let shells: Vec<Sphere> = (0..40_000).map(|i| ball(DVec3::ONE, 1.0 + f64::from(i % 37) / 64.0)).collect();
     let scene = Scene { name: "shells", spheres: shells, triangles: vec![], center: DVec3::ONE, size: 1.0 };
-    let tree = SphereTree::new(scene.spheres.clone(), vec![]);
+    let tree = Bvh::new(scene.spheres.clone(), vec![]);
     for _ in 0..100 {
         let ray = Ray::new(DVec3::new(1.0, 1.0, -5.0), DVec3::Z + 0.5 * random.cube()).unwrap();
         let (hit, visits) = tree.closest_counted(&ray, AHEAD);
@@ -496,7 +496,7 @@ fn copies_of_spheres_with_one_center_are_left_out_too() {
 fn the_tree_saves_tests() {
     let random = &mut Random(5);
     let spheres: Vec<Sphere> = (0..10_000).map(|_| ball(random.cube(), 0.01)).collect();
-    let tree = SphereTree::new(spheres, vec![]);
+    let tree = Bvh::new(spheres, vec![]);
     let (mut work, mut tests) = (0, 0);
     for _ in 0..1000 {
         let ray = Ray::new(random.cube(), random.direction()).unwrap();

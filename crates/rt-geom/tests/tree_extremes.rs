@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use reference::{Rng, holds, scale, scale_vector};
-use rt_geom::{HalvingTree, Hit, Ray, Sphere, SphereTree, Triangle};
+use rt_geom::{Bvh, HalvingTree, Hit, Ray, Sphere, Triangle};
 use rt_math::Roots;
 
 const ALL: Range<f64> = f64::NEG_INFINITY..f64::INFINITY;
@@ -207,7 +207,7 @@ fn compare(seed: u64, rays: usize) -> Counts {
         let scene = scene(&mut rng);
         let rays: Vec<Ray> = (0..8).filter_map(|_| ray(&mut rng, &scene)).collect();
         counts.rays += rays.len();
-        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         let level = ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"][turn % 6];
         let tree = tree.clone().with_simd(level).unwrap_or(tree);
         let halving =
@@ -270,7 +270,7 @@ fn a_direction_of_a_few_units_of_the_smallest_double_in_a_small_scene() {
     let smallest = f64::from_bits(1);
     for (x, y) in [(1.0, 1.0), (2.0, 1.0), (3.0, 2.0), (1.0, -4.0)] {
         let along = DVec3::new(x, y, 0.0);
-        let tree = SphereTree::new(row(along * 1e-20, 2e-21), vec![]);
+        let tree = Bvh::new(row(along * 1e-20, 2e-21), vec![]);
         let ray = Ray::new(along * 1e-18, along * -smallest).unwrap();
         let t = tree.closest(&ray, ALL).unwrap().t;
         for within in [0.0..f64::INFINITY, t..t.next_up(), 0.0..t.next_up(), t..f64::INFINITY] {
@@ -283,7 +283,7 @@ fn a_direction_of_a_few_units_of_the_smallest_double_in_a_small_scene() {
 /// All parameters are beyond the most negative double, so that they are equal, however far apart the balls are.
 #[test]
 fn hits_at_minus_infinity_are_equal() {
-    let tree = SphereTree::new(row(DVec3::X, 0.25), vec![]);
+    let tree = Bvh::new(row(DVec3::X, 0.25), vec![]);
     let halving = HalvingTree::new(row(DVec3::X, 0.25), vec![]);
     for direction in [1e-300, -1e-300] {
         let origin = DVec3::X * (direction * 1e300) * 1e9;

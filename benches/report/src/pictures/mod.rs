@@ -18,7 +18,7 @@ use figures::render::{AHEAD, Renderer};
 use figures::scene::{Look, Scene};
 use figures::scene_file;
 use glam::DVec3;
-use rt_geom::{Hit, Ray, Sphere, SphereTree};
+use rt_geom::{Bvh, Hit, Ray, Sphere};
 use rt_io::{Pixmap, png};
 use rt_shade::color::{clamp, to_sample};
 use serde::{Deserialize, Serialize};
@@ -128,7 +128,7 @@ fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) 
     let truth = exact::picture(&drawn, &view);
     let single = Painter::<f32>::new(&drawn);
     let double = Painter::<f64>::new(&drawn);
-    let tree = SphereTree::new(drawn.spheres.clone(), drawn.triangles.clone());
+    let tree = Bvh::new(drawn.spheres.clone(), drawn.triangles.clone());
     let renderer = Renderer::new(scene());
     let by = |closest: &dyn Fn(&Ray) -> Option<Hit>| paint(&view, |ray| renderer.color(ray, closest(ray)));
     let methods: [(&str, bool, Draw); 5] = [

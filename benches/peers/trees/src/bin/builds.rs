@@ -6,7 +6,7 @@ use std::any::Any;
 use std::time::Instant;
 
 use glam::DVec3;
-use rt_geom::{Sphere, SphereTree};
+use rt_geom::{Sphere, Bvh};
 use trees::contestants::embree;
 use trees::{memory, workload};
 
@@ -31,7 +31,7 @@ fn main() {
                     let [x, y, z, radius] = s.map(f64::from);
                     Sphere::new(DVec3::new(x, y, z), radius).expect("valid")
                 };
-                SphereTree::new(spheres.iter().map(sphere).collect(), Vec::new())
+                Bvh::new(spheres.iter().map(sphere).collect(), Vec::new())
             };
             let per = |bytes: usize| bytes as f64 / spheres.len() as f64;
             let timed = |build: &dyn Fn() -> Box<dyn Any>| {

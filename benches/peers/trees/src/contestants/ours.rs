@@ -1,4 +1,4 @@
-//! `SphereTree`: one ray at a time and batches of 1024, with the best instruction set and with AVX2 alone.
+//! `Bvh`: one ray at a time and batches of 1024, with the best instruction set and with AVX2 alone.
 //!
 //! Narrowing the answers to f32 and widening the rays to f64 is part of the time.
 
@@ -11,7 +11,7 @@ const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 const BATCH: usize = 1024;
 
 struct Ours {
-    tree: geom::SphereTree,
+    tree: geom::Bvh,
     batch: bool,
 }
 
@@ -70,7 +70,7 @@ pub fn mesh(corners: &[[f32; 3]], triangles: &[[u32; 3]], batch: bool, simd: Opt
         let [a, b, c] = t.map(|i| vector(corners[i as usize]));
         geom::Triangle::new(a, b, c).expect("finite corners")
     };
-    let tree = geom::SphereTree::new(Vec::new(), triangles.iter().map(triangle).collect());
+    let tree = geom::Bvh::new(Vec::new(), triangles.iter().map(triangle).collect());
     let tree = match simd {
         Some(name) => tree.with_simd(name).expect("this CPU has the instruction set"),
         None => tree,
@@ -85,7 +85,7 @@ pub fn contestants() -> Vec<Contestant> {
         slow: false,
         build: Box::new(move |spheres: &[Sphere]| {
             let sphere = |s: &Sphere| geom::Sphere::new(vector([s[0], s[1], s[2]]), f64::from(s[3])).expect("valid");
-            let tree = geom::SphereTree::new(spheres.iter().map(sphere).collect(), Vec::new());
+            let tree = geom::Bvh::new(spheres.iter().map(sphere).collect(), Vec::new());
             let tree = match simd {
                 Some(name) => tree.with_simd(name).expect("this CPU has the instruction set"),
                 None => tree,

@@ -13,7 +13,7 @@ use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 use super::cull::{Line, box_keys, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
 use super::walk::{Areas, Best, ask};
-use super::{Hit, SphereTree};
+use super::{Bvh, Hit};
 use crate::Ray;
 use crate::ray::PreparedRay;
 use crate::simd::{has_fma, prefetch_lines};
@@ -97,7 +97,7 @@ struct Survivors {
 #[inline(always)]
 pub(super) fn fly<S: Simd>(
     simd: S,
-    tree: &SphereTree,
+    tree: &Bvh,
     rays: &[Ray],
     within: &Range<f64>,
     any: bool,
@@ -238,7 +238,7 @@ fn launch<'a, S: Simd>(
     simd: S,
     slot: &mut Slot<'a>,
     root: Child,
-    tree: &SphereTree,
+    tree: &Bvh,
     within: &Range<f64>,
     waiting: &mut impl Iterator<Item = (usize, &'a Ray)>,
     answer: &mut impl FnMut(usize, Option<Hit>),
@@ -259,7 +259,7 @@ fn launch<'a, S: Simd>(
 
 /// Takes the nearest pending part that is still of interest.
 #[inline(always)]
-fn next(slot: &mut Slot, tree: &SphereTree, stacks: &Stacks) -> Option<Child> {
+fn next(slot: &mut Slot, tree: &Bvh, stacks: &Stacks) -> Option<Child> {
     let last = slot.line.last_key();
     let mut top = slot.base + slot.height;
     while top > slot.base && stacks.keys[top - 1] & !LANE > last {

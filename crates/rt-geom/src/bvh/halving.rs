@@ -2,7 +2,7 @@
 //!
 //! The root encloses all `n` primitives; its two children take the first `⌊n/2⌋` and the rest, and so on. Every
 //! node carries the minimal sphere of what is below it. A ray visits a node if it meets that ball, and tests the
-//! primitives at the leaves. This is the baseline that [`SphereTree`](crate::SphereTree) is measured against: it
+//! primitives at the leaves. This is the baseline that [`Bvh`](crate::Bvh) is measured against: it
 //! halves a list, not space, so it saves tests only as far as the list happens to be sorted.
 //!
 //! The visit is decided by the exact roots of the node's sphere. The ball contains every primitive below it in exact

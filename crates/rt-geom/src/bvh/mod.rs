@@ -49,7 +49,7 @@ pub enum Shape {
 /// So do rays that start beyond 2^42 radii from the scene, or whose direction is so long or so short that one
 /// unit of `t` in radii of the scene is not a normal double: they meet every primitive.
 #[derive(Clone, Debug)]
-pub struct SphereTree {
+pub struct Bvh {
     /// In leaf order, as are the triangles.
     spheres: Vec<Sphere>,
     triangles: Vec<Triangle>,
@@ -69,7 +69,7 @@ pub struct SphereTree {
     level: Level,
 }
 
-impl SphereTree {
+impl Bvh {
     /// Builds the tree, in parallel on rayon's current pool. Any input will do, also none at all.
     ///
     /// # Panics

@@ -12,7 +12,7 @@ use fearless_simd::Simd;
 
 use super::cull::{Line, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
-use super::{Hit, Shape, SphereTree};
+use super::{Bvh, Hit, Shape};
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay};
 use crate::simd::{has_fma, prefetch_lines};
@@ -31,7 +31,7 @@ pub struct Visits {
 /// A part of the tree that is still to be visited: the key of its entry above its [`Child`].
 pub(super) type Pending = u64;
 
-/// Entries that stacks of the usual sizes hold; [`SphereTree::stack`] tells what a tree needs. To clear more than is
+/// Entries that stacks of the usual sizes hold; [`Bvh::stack`] tells what a tree needs. To clear more than is
 /// needed takes time.
 const SMALL_STACK: usize = 48;
 const STACK: usize = 128;
@@ -82,13 +82,7 @@ impl Best {
 
     /// Takes the candidate if it is closer; returns whether it did.
     #[inline(always)]
-    pub(super) fn offer(
-        &mut self,
-        bounds: Candidate,
-        place: usize,
-        tree: &SphereTree,
-        ray: &PreparedRay,
-    ) -> bool {
+    pub(super) fn offer(&mut self, bounds: Candidate, place: usize, tree: &Bvh, ray: &PreparedRay) -> bool {
         let closer = bounds.high < self.bounds.low
             || (bounds.low <= self.bounds.high && self.settle(bounds, place, tree, ray));
         if closer && bounds.high < self.bounds.low {
@@ -101,7 +95,7 @@ impl Best {
     /// The bounds overlap: compares the correctly rounded parameters, then the indices.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self, bounds: Candidate, place: usize, tree: &SphereTree, ray: &PreparedRay) -> bool {
+    fn settle(&mut self, bounds: Candidate, place: usize, tree: &Bvh, ray: &PreparedRay) -> bool {
         if !self.exists() {
             let t = tree.rounded_within(bounds, place, ray);
             *self = Self { bounds: Candidate { low: t, high: t }, place };
@@ -128,7 +122,7 @@ impl Best {
 
     /// The hit, with its `t` correctly rounded.
     #[inline(always)]
-    pub(super) fn hit(&self, tree: &SphereTree, ray: &PreparedRay) -> Option<Hit> {
+    pub(super) fn hit(&self, tree: &Bvh, ray: &PreparedRay) -> Option<Hit> {
         if !self.exists() {
             return None;
         }
@@ -143,7 +137,7 @@ impl Best {
 #[inline(always)]
 pub(super) fn cast<S: Simd>(
     simd: S,
-    tree: &SphereTree,
+    tree: &Bvh,
     ray: &Ray,
     within: Range<f64>,
     any: bool,
@@ -172,7 +166,7 @@ pub(super) fn cast<S: Simd>(
 #[inline(always)]
 fn walk<S: Simd>(
     simd: S,
-    tree: &SphereTree,
+    tree: &Bvh,
     ray: &PreparedRay,
     any: bool,
     line: &mut Line,
@@ -313,7 +307,7 @@ pub(super) struct Areas([(*const u8, usize); 4]);
 
 impl Areas {
     #[inline(always)]
-    pub(super) fn of(tree: &SphereTree) -> Self {
+    pub(super) fn of(tree: &Bvh) -> Self {
         fn area<T>(items: &[T]) -> (*const u8, usize) {
             (items.as_ptr().cast(), size_of::<T>())
         }
@@ -335,7 +329,7 @@ pub(super) fn is_open(within: &Range<f64>) -> bool {
     !within.start.is_nan() && !within.end.is_nan() && within.start.total_cmp(&within.end).is_lt()
 }
 
-impl SphereTree {
+impl Bvh {
     /// Whether what a walk reads is better asked for early.
     #[inline(always)]
     pub(super) fn is_large(&self) -> bool {
