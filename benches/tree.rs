@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
-use rt_geom::{Bvh, HalvingTree, Ray, Sphere};
+use rt_geom::{Bvh, Ray, Sphere, SphereTree};
 
 const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 const RAYS: usize = 1024;
@@ -48,7 +48,7 @@ fn closest(c: &mut Criterion) {
             b.iter(|| tree.closest_batch(black_box(&rays), AHEAD, &mut hits));
         });
         if n <= 1_000 {
-            let halving = HalvingTree::new(spheres.clone(), vec![]);
+            let halving = SphereTree::new(spheres.clone(), vec![]);
             group.bench_function(format!("halving/{name}"), |b| {
                 b.iter(|| rays.iter().filter_map(|ray| halving.closest(black_box(ray), AHEAD)).count());
             });

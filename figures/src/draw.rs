@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_geom::HalvingTree;
+use rt_geom::SphereTree;
 use rt_io::Pixmap;
 use serde::Serialize;
 
@@ -221,7 +221,7 @@ pub fn count_tests(scene: &Path, size: PictureSize) -> Result<(), Failure> {
     };
     let view = view(&scene, size, 1)?;
     let objects = scene.len() as u64;
-    let tree = HalvingTree::new(scene.spheres, scene.triangles);
+    let tree = SphereTree::new(scene.spheres, scene.triangles);
     let PictureSize { width, height } = size;
     let tests: u64 = (0..height)
         .into_par_iter()

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pxfm::f_cbrt;
-use rt_geom::{Bvh, HalvingTree, Hit, Ray, Sphere};
+use rt_geom::{Bvh, Hit, Ray, Sphere, SphereTree};
 use serde::{Deserialize, Serialize};
 
 use super::labels::Labels;
@@ -82,11 +82,11 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
         build();
         start.elapsed().as_secs_f64()
     };
-    let halving = HalvingTree::new(spheres.clone(), Vec::new());
+    let halving = SphereTree::new(spheres.clone(), Vec::new());
     let tree = Bvh::new(spheres.clone(), Vec::new());
     let builds = [
         0.0,
-        timed(&|| drop(black_box(HalvingTree::new(spheres.clone(), Vec::new())))),
+        timed(&|| drop(black_box(SphereTree::new(spheres.clone(), Vec::new())))),
         timed(&|| drop(black_box(Bvh::new(spheres.clone(), Vec::new())))),
     ];
 

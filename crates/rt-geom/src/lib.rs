@@ -5,17 +5,21 @@ mod enclosing;
 mod inside;
 mod plane;
 mod ray;
+mod shape;
 mod simd;
 mod sphere;
+mod sphere_tree;
 mod stage;
 mod triangle;
 
-pub use bvh::{Bvh, HalvingTree, Hit, Shape, Visits};
+pub use bvh::{Bvh, Visits};
 pub use enclosing::{Enclosing, enclosing_sphere};
 pub use inside::{Inside, inside_triangle};
 pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
+pub use shape::{Hit, Shape};
 pub use sphere::{Side, Sphere};
+pub use sphere_tree::SphereTree;
 pub use triangle::{Triangle, Verdict};
 
 // The reference of the tests, for those that look inside.

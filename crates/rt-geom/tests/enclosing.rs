@@ -8,7 +8,7 @@
 use dashu::float::{FBig, round::mode::HalfEven};
 use dashu::rational::RBig;
 use glam::DVec3;
-use rt_geom::{Bvh, Enclosing, HalvingTree, Ray, Sphere, Triangle, enclosing_sphere};
+use rt_geom::{Bvh, Enclosing, Ray, Sphere, SphereTree, Triangle, enclosing_sphere};
 
 type Number = FBig<HalfEven, 2>;
 
@@ -540,7 +540,7 @@ fn trees_of_two_balls_and_a_triangle_are_built_anywhere() {
         let [a, b, c] = [(); 3].map(|()| offset + size * random.point());
         let triangles = vec![Triangle::new(a, b, c).expect("finite")];
         let fast = Bvh::new(spheres.clone(), triangles.clone());
-        let halves = HalvingTree::new(spheres.clone(), triangles.clone());
+        let halves = SphereTree::new(spheres.clone(), triangles.clone());
         for target in [spheres[0].center(), spheres[1].center(), (a + b + c) / 3.0, a] {
             let Some(ray) = Ray::new(DVec3::ZERO, target) else { continue };
             let range = 0.0..f64::INFINITY;

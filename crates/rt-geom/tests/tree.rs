@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use rt_geom::{Bvh, HalvingTree, Hit, Ray, Shape, Sphere, Triangle, enclosing_sphere};
+use rt_geom::{Bvh, Hit, Ray, Shape, Sphere, SphereTree, Triangle, enclosing_sphere};
 
 const AHEAD: Range<f64> = 0.0..f64::INFINITY;
 
@@ -230,7 +230,7 @@ fn tree_gives_the_plain_loops_hit() {
 #[test]
 fn halving_tree_gives_the_plain_loops_hit() {
     for scene in scenes() {
-        let tree = HalvingTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let tree = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
         for ray in rays(&scene, rays_per_scene(&scene) / 20) {
             let expected = closest_by_loop(&scene, &ray, &AHEAD);
             assert_eq!(bits(tree.closest(&ray, AHEAD)), bits(expected), "{}: {ray:?}", scene.name);
@@ -243,7 +243,7 @@ fn halving_tree_gives_the_plain_loops_hit() {
 fn every_range_gives_the_plain_loops_hit() {
     for scene in scenes() {
         let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
-        let halving = HalvingTree::new(scene.spheres.clone(), scene.triangles.clone());
+        let halving = SphereTree::new(scene.spheres.clone(), scene.triangles.clone());
         for ray in rays(&scene, rays_per_scene(&scene) / 40) {
             let t = closest_by_loop(&scene, &ray, &AHEAD).map_or(1.0, |hit| hit.t);
             let infinity = f64::INFINITY;
@@ -436,9 +436,9 @@ fn equal_primitives_cost_what_one_does_and_the_lowest_index_answers() {
         ];
         for (spheres, triangles, one, one_triangle) in scenes {
             let tree = Bvh::new(spheres.clone(), triangles.clone());
-            let halving = HalvingTree::new(spheres.clone(), triangles.clone());
+            let halving = SphereTree::new(spheres.clone(), triangles.clone());
             let alone = Bvh::new(one.clone(), one_triangle.clone());
-            let halving_alone = HalvingTree::new(one, one_triangle);
+            let halving_alone = SphereTree::new(one, one_triangle);
             for (i, &sphere) in spheres.iter().enumerate() {
                 assert_eq!(tree.shape(i), Shape::Sphere(sphere));
             }

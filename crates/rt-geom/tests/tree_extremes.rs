@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use reference::{Rng, holds, scale, scale_vector};
-use rt_geom::{Bvh, HalvingTree, Hit, Ray, Sphere, Triangle};
+use rt_geom::{Bvh, Hit, Ray, Sphere, SphereTree, Triangle};
 use rt_math::Roots;
 
 const ALL: Range<f64> = f64::NEG_INFINITY..f64::INFINITY;
@@ -211,7 +211,7 @@ fn compare(seed: u64, rays: usize) -> Counts {
         let level = ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"][turn % 6];
         let tree = tree.clone().with_simd(level).unwrap_or(tree);
         let halving =
-            (turn % 8 == 0).then(|| HalvingTree::new(scene.spheres.clone(), scene.triangles.clone()));
+            (turn % 8 == 0).then(|| SphereTree::new(scene.spheres.clone(), scene.triangles.clone()));
         let hits: Vec<Vec<Hit>> = rays.iter().map(|ray| all_hits(&scene, ray)).collect();
         let mut check = |within: &Range<f64>, chosen: Range<usize>| {
             let (rays, hits) = (&rays[chosen.clone()], &hits[chosen]);
@@ -284,7 +284,7 @@ fn a_direction_of_a_few_units_of_the_smallest_double_in_a_small_scene() {
 #[test]
 fn hits_at_minus_infinity_are_equal() {
     let tree = Bvh::new(row(DVec3::X, 0.25), vec![]);
-    let halving = HalvingTree::new(row(DVec3::X, 0.25), vec![]);
+    let halving = SphereTree::new(row(DVec3::X, 0.25), vec![]);
     for direction in [1e-300, -1e-300] {
         let origin = DVec3::X * (direction * 1e300) * 1e9;
         let ray = Ray::new(origin, DVec3::X * direction).unwrap();

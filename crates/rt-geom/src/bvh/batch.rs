@@ -10,10 +10,11 @@ use std::ops::Range;
 
 use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
+use super::Bvh;
 use super::cull::{Line, box_keys, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
 use super::walk::{Areas, Best, ask};
-use super::{Bvh, Hit};
+use crate::Hit;
 use crate::Ray;
 use crate::ray::PreparedRay;
 use crate::simd::{has_fma, prefetch_lines};

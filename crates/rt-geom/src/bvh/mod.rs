@@ -3,7 +3,6 @@
 mod batch;
 mod build;
 mod cull;
-mod halving;
 mod node;
 mod rank;
 mod walk;
@@ -13,32 +12,13 @@ use std::ops::Range;
 use fearless_simd::{Fallback, Level, dispatch};
 use rayon::prelude::*;
 
-pub use halving::HalvingTree;
 pub use walk::Visits;
 
-use crate::{Ray, Sphere, Triangle, enclosing_sphere};
+use crate::{Hit, Ray, Shape, Sphere, Triangle, enclosing_sphere};
 use batch::fly;
 use build::{Branch, Item, Part};
 use node::{Balls, Boxes, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH, down, up};
 use walk::{cast, is_open};
-
-/// Where a ray meets a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
-    /// Which primitive: spheres as listed, then triangles as listed.
-    pub index: usize,
-    /// Where on the ray, in units of its direction; correctly rounded.
-    pub t: f64,
-}
-
-/// One primitive of a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// A sphere.
-    Sphere(Sphere),
-    /// A triangle.
-    Triangle(Triangle),
-}
 
 /// The tree to cast rays with: answers equal the plain loop's, bit for bit.
 ///
@@ -358,6 +338,6 @@ fn item(low: glam::DVec3, high: glam::DVec3, index: usize) -> Item {
 }
 
 /// The minimal sphere of a triangle; `None` if it has no finite radius.
-fn minimal_sphere(triangle: &Triangle) -> Option<Sphere> {
+pub(crate) fn minimal_sphere(triangle: &Triangle) -> Option<Sphere> {
     minimal_sphere_of(&corners(std::slice::from_ref(triangle)))
 }

@@ -10,12 +10,13 @@ use std::ops::Range;
 
 use fearless_simd::Simd;
 
+use super::Bvh;
 use super::cull::{Line, meet_balls, meet_boxes};
 use super::node::{Child, Kind, WIDTH};
-use super::{Bvh, Hit, Shape};
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay};
 use crate::simd::{has_fma, prefetch_lines};
+use crate::{Hit, Shape};
 
 /// What a query did, for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -13,23 +13,23 @@ use std::ops::Range;
 
 use rt_math::Roots;
 
-use super::{Hit, Shape, minimal_sphere};
-use crate::{Ray, Sphere, Triangle, enclosing_sphere};
+use crate::bvh::minimal_sphere;
+use crate::{Hit, Ray, Shape, Sphere, Triangle, enclosing_sphere};
 
 /// The tree by index halves, over spheres and triangles in the order given (spheres first).
 ///
 /// ```
 /// use glam::DVec3;
-/// use rt_geom::{HalvingTree, Hit, Ray, Sphere};
+/// use rt_geom::{SphereTree, Hit, Ray, Sphere};
 /// let row = |i: i32| Sphere::new(DVec3::new(3.0 * f64::from(i), 0.0, -5.0), 1.0).unwrap();
-/// let tree = HalvingTree::new((0..64).map(row).collect(), Vec::new());
+/// let tree = SphereTree::new((0..64).map(row).collect(), Vec::new());
 /// let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z).unwrap();
 /// let (hit, tests) = tree.closest_counted(&ray, 0.0..f64::INFINITY);
 /// assert_eq!(hit, Some(Hit { index: 0, t: 4.0 }));
 /// assert!(tests < 16, "a plain loop makes 64 tests, the tree {tests}");
 /// ```
 #[derive(Clone, Debug)]
-pub struct HalvingTree {
+pub struct SphereTree {
     spheres: Vec<Sphere>,
     triangles: Vec<Triangle>,
     /// Inner nodes, each before its first half's nodes and those before its second half's.
@@ -47,7 +47,7 @@ struct Node {
     equal: bool,
 }
 
-impl HalvingTree {
+impl SphereTree {
     /// Builds the tree in `O(n log n)` time. Any input will do, also none at all.
     pub fn new(spheres: Vec<Sphere>, triangles: Vec<Triangle>) -> Self {
         let mut bounds: Vec<Option<Sphere>> = spheres.iter().copied().map(Some).collect();
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn the_second_child_takes_the_larger_half() {
         // Five spheres: nodes over 5, 2 | 3 and, inside the 3, over 2.
-        let tree = HalvingTree::new((0..5).map(|i| ball(f64::from(i), 0.0, 0.0, 0.25)).collect(), vec![]);
+        let tree = SphereTree::new((0..5).map(|i| ball(f64::from(i), 0.0, 0.0, 0.25)).collect(), vec![]);
         let radii: Vec<f64> = tree.nodes.iter().map(|node| node.sphere.unwrap().radius()).collect();
         let expected = [2.25, 0.75, 1.25, 0.75];
         assert_eq!(radii.len(), 4);
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_miss_of_the_root_is_one_test() {
-        let tree = HalvingTree::new((0..100).map(|i| ball(f64::from(i), 0.0, 0.0, 0.25)).collect(), vec![]);
+        let tree = SphereTree::new((0..100).map(|i| ball(f64::from(i), 0.0, 0.0, 0.25)).collect(), vec![]);
         let ray = Ray::new(DVec3::new(0.0, 10.0, 0.0), DVec3::Y).unwrap();
         assert_eq!(tree.closest_counted(&ray, 0.0..f64::INFINITY), (None, 1));
     }
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn no_finite_sphere_means_always_visited() {
         let far = f64::MAX;
-        let tree = HalvingTree::new(vec![ball(-far, 0.0, 0.0, 1.0), ball(far, 0.0, 0.0, far)], vec![]);
+        let tree = SphereTree::new(vec![ball(-far, 0.0, 0.0, 1.0), ball(far, 0.0, 0.0, far)], vec![]);
         assert!(tree.nodes[0].sphere.is_none());
         let ray = Ray::new(DVec3::new(1.0, 0.0, 0.0), DVec3::X).unwrap();
         assert_eq!(tree.closest(&ray, 0.0..f64::INFINITY).map(|hit| hit.index), Some(1));
@@ -214,8 +214,8 @@ mod tests {
     #[test]
     fn nothing_is_hit_in_an_empty_tree_or_range() {
         let ray = Ray::new(DVec3::ZERO, DVec3::X).unwrap();
-        assert_eq!(HalvingTree::new(vec![], vec![]).closest(&ray, 0.0..f64::INFINITY), None);
-        let tree = HalvingTree::new(vec![ball(3.0, 0.0, 0.0, 1.0)], vec![]);
+        assert_eq!(SphereTree::new(vec![], vec![]).closest(&ray, 0.0..f64::INFINITY), None);
+        let tree = SphereTree::new(vec![ball(3.0, 0.0, 0.0, 1.0)], vec![]);
         assert_eq!(tree.closest(&ray, f64::NAN..f64::INFINITY), None);
         assert_eq!(tree.closest(&ray, 2.0..2.0), None);
     }
