@@ -57,8 +57,7 @@ fn read(criterion: &mut Criterion) {
         });
         group.bench_function("image", |bencher| {
             bencher.iter(|| {
-                image::load_from_memory_with_format(black_box(&bytes), ImageFormat::Pnm)
-                    .expect("a valid file")
+                image::load_from_memory_with_format(black_box(&bytes), ImageFormat::Pnm).expect("a valid file")
             });
         });
         if netpbm("pnmtopnm", &[], &bytes) {

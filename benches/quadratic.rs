@@ -25,8 +25,7 @@ fn random() -> impl FnMut() -> f64 {
 fn cases() -> [(&'static str, Vec<Equation>); 4] {
     let mut random = random();
     let from_roots = |a: f64, x: f64, y: f64| [a, -a * (x + y), a * x * y];
-    let predictable =
-        (0..4096).map(|_| from_roots(1.5 + random(), 10.0 * random(), 10.0 * random())).collect();
+    let predictable = (0..4096).map(|_| from_roots(1.5 + random(), 10.0 * random(), 10.0 * random())).collect();
     let any = (0..1 << 17).map(|_| [random(), random(), random()]).collect();
     let mut small = || (1e6 * random()).round();
     let double = (0..4096).map(|_| (small(), small())).map(|(p, q)| [p * p, 2.0 * p * q, q * q]).collect();

@@ -72,8 +72,7 @@ fn gems(ray: &Ray, sphere: &Sphere) -> Option<f64> {
 fn cases(hits: bool, misses: bool) -> Vec<(Ray, Sphere)> {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let make = || {
-        let (origin, center, radius) =
-            (10.0 * random.vector(), 10.0 * random.vector(), 3.0 * random.uniform().abs());
+        let (origin, center, radius) = (10.0 * random.vector(), 10.0 * random.vector(), 3.0 * random.uniform().abs());
         let ray = Ray::new(origin, center + 1.4 * radius * random.vector() - origin)?;
         Some((ray, Sphere::new(center, radius)?))
     };

@@ -41,13 +41,7 @@ fn reflections(criterion: &mut Criterion) {
     }
 }
 
-fn measure(
-    criterion: &mut Criterion,
-    name: &str,
-    case: &str,
-    pairs: &[Pair],
-    mirror: impl Fn(DVec3, DVec3) -> DVec3,
-) {
+fn measure(criterion: &mut Criterion, name: &str, case: &str, pairs: &[Pair], mirror: impl Fn(DVec3, DVec3) -> DVec3) {
     let mut group = criterion.benchmark_group("reflect");
     group.throughput(Throughput::Elements(pairs.len() as u64));
     group.bench_function(BenchmarkId::new(name, case), |bencher| {

@@ -45,8 +45,7 @@ fn normalized_uv(normal: DVec3) -> (f64, f64) {
 /// Two arc tangents of a library whose angles are correctly rounded in practice.
 fn pxfm_uv(normal: DVec3) -> (f64, f64) {
     let DVec3 { x, y, z } = normal;
-    let u =
-        if x < 0.0 && z < 0.0 { pxfm::f_atan2pi(-z, -x) / 2.0 } else { 0.5 + pxfm::f_atan2pi(z, x) / 2.0 };
+    let u = if x < 0.0 && z < 0.0 { pxfm::f_atan2pi(-z, -x) / 2.0 } else { 0.5 + pxfm::f_atan2pi(z, x) / 2.0 };
     (u, pxfm::f_atan2pi(x.hypot(z), y))
 }
 
@@ -115,13 +114,7 @@ fn shading(criterion: &mut Criterion) {
 }
 
 /// Phong's model as it is usually written, with the system's power.
-fn textbook_phong(
-    point: DVec3,
-    direction: DVec3,
-    normal: DVec3,
-    material: &Material,
-    lights: &[PointLight],
-) -> DVec3 {
+fn textbook_phong(point: DVec3, direction: DVec3, normal: DVec3, material: &Material, lights: &[PointLight]) -> DVec3 {
     let direction = direction.normalize();
     let normal = if direction.dot(normal) > 0.0 { -normal } else { normal };
     let mut color = DVec3::splat(material.ambient);
@@ -131,8 +124,7 @@ fn textbook_phong(
         if cosine > 0.0 {
             let reflected = incident - 2.0 * incident.dot(normal) * normal;
             let alignment = (-direction.dot(reflected)).max(0.0);
-            color += (material.diffuse * cosine + material.specular * alignment.powf(material.shininess))
-                * light.color;
+            color += (material.diffuse * cosine + material.specular * alignment.powf(material.shininess)) * light.color;
         }
     }
     color

@@ -53,9 +53,8 @@ fn closest(c: &mut Criterion) {
                 b.iter(|| rays.iter().filter_map(|ray| halving.closest(black_box(ray), AHEAD)).count());
             });
             group.bench_function(format!("brute_force/{name}"), |b| {
-                let closest = |ray: &Ray| {
-                    spheres.iter().filter_map(|sphere| sphere.closest(ray, AHEAD)).min_by(f64::total_cmp)
-                };
+                let closest =
+                    |ray: &Ray| spheres.iter().filter_map(|sphere| sphere.closest(ray, AHEAD)).min_by(f64::total_cmp);
                 b.iter(|| rays.iter().filter_map(|ray| closest(black_box(ray))).count());
             });
         }

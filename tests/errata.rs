@@ -67,8 +67,7 @@ fn lamp(position: DVec3) -> PointLight {
 #[test]
 fn the_lit_side_is_bright_and_the_dark_side_does_not_glow() {
     for material in [MATTE, MIRROR] {
-        let shade =
-            |light: PointLight| phong(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &material, &[light]);
+        let shade = |light: PointLight| phong(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &material, &[light]);
         assert_eq!(shade(lamp(2.0 * DVec3::Z)), DVec3::ONE, "lit from the front, {material:?}");
         assert_eq!(shade(lamp(-2.0 * DVec3::Z)), DVec3::ZERO, "lit from behind, {material:?}");
     }
@@ -83,10 +82,7 @@ fn the_highlight_faces_the_eye() {
     let towards_the_mirror_image = DVec3::new(3.0, 0.0, -4.0);
     let full = mirrored(towards_the_mirror_image);
     assert!((full - 1.0).abs() < 1e-14, "the eye in the mirrored ray sees the full highlight, found {full}");
-    assert!(
-        (mirrored(1000.0 * towards_the_mirror_image) - full).abs() < 1e-14,
-        "a longer ray is not brighter"
-    );
+    assert!((mirrored(1000.0 * towards_the_mirror_image) - full).abs() < 1e-14, "a longer ray is not brighter");
     assert_eq!(mirrored(DVec3::new(-4.0, 0.0, -3.0)), 0.0, "at a right angle there is none");
 }
 

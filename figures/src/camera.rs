@@ -21,14 +21,7 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self {
-            eye: DVec3::ZERO,
-            forward: DVec3::NEG_Z,
-            right: DVec3::X,
-            up: DVec3::Y,
-            half_height: 1.0,
-            fit: false,
-        }
+        Self { eye: DVec3::ZERO, forward: DVec3::NEG_Z, right: DVec3::X, up: DVec3::Y, half_height: 1.0, fit: false }
     }
 }
 
@@ -241,8 +234,7 @@ mod tests {
 
     #[test]
     fn a_picture_of_odd_size_has_its_middle_straight_ahead() {
-        let camera =
-            Camera::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.5, 9.0), DVec3::Y, 30.0).unwrap();
+        let camera = Camera::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.5, 9.0), DVec3::Y, 30.0).unwrap();
         let ray = View::new(camera, Size { width: 9, height: 5, samples: 1 }).ray(4, 2);
         assert_eq!(ray.direction(), camera.axes()[2]);
     }
@@ -270,11 +262,8 @@ mod tests {
 
     #[test]
     fn fitted_balls_touch_the_narrower_edges_up_to_the_margin() {
-        let balls = [
-            (DVec3::new(3.0, -2.0, 40.0), 2.5),
-            (DVec3::new(-7.0, 1.0, 38.0), 0.5),
-            (DVec3::new(2.0, 9.0, 51.0), 0.0),
-        ];
+        let balls =
+            [(DVec3::new(3.0, -2.0, 40.0), 2.5), (DVec3::new(-7.0, 1.0, 38.0), 0.5), (DVec3::new(2.0, 9.0, 51.0), 0.0)];
         let turned = Camera::new(DVec3::X, DVec3::new(-3.0, 2.0, 9.0), DVec3::Y, 50.0).unwrap();
         for (camera, width, height) in [
             (Camera::default(), 64, 48),

@@ -173,8 +173,7 @@ impl FromStr for PictureSize {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (width, height) =
-            text.split_once('x').ok_or("expected columns x rows, such as 640x480".to_owned())?;
+        let (width, height) = text.split_once('x').ok_or("expected columns x rows, such as 640x480".to_owned())?;
         let side = |digits: &str| match digits.parse::<u32>() {
             Ok(side @ 1..=MAX_SIDE) => Ok(side),
             _ => Err(format!("expected a whole number from 1 to {MAX_SIDE}, found {digits:?}")),
@@ -223,10 +222,7 @@ impl FromStr for Which {
         match (text, figure) {
             ("all", _) => Ok(Self::All),
             (_, Some(figure)) => Ok(Self::One(figure)),
-            _ => {
-                Err("expected the number of a figure, 1 to 6, or \"all\", or a command; see --help"
-                    .to_owned())
-            }
+            _ => Err("expected the number of a figure, 1 to 6, or \"all\", or a command; see --help".to_owned()),
         }
     }
 }
@@ -272,9 +268,7 @@ impl Piece {
         let (comment, balls) = match *self {
             Self::Knot { segments } => {
                 if !matches!(ending.as_str(), "" | "obj") {
-                    return Err(Failure::Usage(format!(
-                        "a knot is a mesh: expected a file.obj, found .{ending}"
-                    )));
+                    return Err(Failure::Usage(format!("a knot is a mesh: expected a file.obj, found .{ending}")));
                 }
                 return Target::exactly(out).write_with(|out| generate::write_knot(segments, out));
             }
@@ -286,8 +280,7 @@ impl Piece {
             Self::Spheres { rule, count } => {
                 let bytes = u64::from(count) * size_of::<Ball>() as u64;
                 memory::check(bytes, &format!("{count} spheres"), "make fewer of them (--count)")?;
-                let name =
-                    rule.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
+                let name = rule.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
                 (format!("{count} spheres, {name}"), generate::random(rule, count))
             }
         };
@@ -312,8 +305,6 @@ fn ask() -> Result<Which, Failure> {
     let answer = answer.trim();
     match answer.parse() {
         Ok(which) if read.is_ok() => Ok(which),
-        _ => Err(Failure::Usage(format!(
-            "expected the number of a figure, 1 to 6, or \"all\", found {answer:?}"
-        ))),
+        _ => Err(Failure::Usage(format!("expected the number of a figure, 1 to 6, or \"all\", found {answer:?}"))),
     }
 }

@@ -58,9 +58,7 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
     }
     let destination = destination(options, folder)?;
     let pool = pool(options)?;
-    figures
-        .iter()
-        .try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), &destination, options, &pool))
+    figures.iter().try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), &destination, options, &pool))
 }
 
 /// Draws the scene file at `path`.
@@ -68,8 +66,7 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
 /// # Errors
 /// As [`figures`].
 pub fn scene_file(path: &Path, options: &DrawOptions) -> Result<(), Failure> {
-    let name =
-        path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
     draw(&name, || load(path), &destination(options, false)?, options, &pool(options)?)
 }
 

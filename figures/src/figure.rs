@@ -46,6 +46,5 @@ impl Figure {
 
 /// Returns the bytes of the file that a figure's scene names, if it is carried in the program.
 pub fn asset(path: &str) -> Option<&'static [u8]> {
-    (path == "../assets/earth-natural-720x360.png")
-        .then_some(include_bytes!("../assets/earth-natural-720x360.png"))
+    (path == "../assets/earth-natural-720x360.png").then_some(include_bytes!("../assets/earth-natural-720x360.png"))
 }

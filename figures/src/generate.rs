@@ -88,14 +88,12 @@ pub fn write_toml(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Res
 /// Six children stand around the equator, three above, seen from where the parent touches its own parent.
 pub fn sphereflake(depth: u32) -> Vec<Ball> {
     let half_root = 0.75_f64.sqrt(); // sin 60 degrees
-    let equator =
-        [(1.0, 0.0), (0.5, half_root), (-0.5, half_root), (-1.0, 0.0), (-0.5, -half_root), (0.5, -half_root)];
+    let equator = [(1.0, 0.0), (0.5, half_root), (-0.5, half_root), (-1.0, 0.0), (-0.5, -half_root), (0.5, -half_root)];
     let mut directions: Vec<DVec3> = equator.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();
     // Above, between the equator's, at the height where all nine are evenly apart.
     let (low, high) = ((1.0_f64 / 3.0).sqrt(), (2.0_f64 / 3.0).sqrt());
-    directions.extend(
-        [(half_root, 0.5), (-half_root, 0.5), (0.0, -1.0)].map(|(x, y)| DVec3::new(low * x, low * y, high)),
-    );
+    directions
+        .extend([(half_root, 0.5), (-half_root, 0.5), (0.0, -1.0)].map(|(x, y)| DVec3::new(low * x, low * y, high)));
 
     let mut balls = Vec::with_capacity(flake_spheres(depth));
     // A sphere and its frame, whose z axis points away from the parent. The root's points up, turned a little to the eye.
@@ -180,16 +178,9 @@ pub fn random(rule: Rule, count: u32) -> Vec<Ball> {
         Rule::Packed => {
             let side = (1..).find(|side: &u32| 4 * u64::from(*side).pow(3) >= u64::from(count)).unwrap_or(1);
             let cell = 2.0 / f64::from(side);
-            let places =
-                (0..side).flat_map(|i| (0..side).flat_map(move |j| (0..side).map(move |k| [i, j, k])));
-            let basis = [
-                DVec3::ZERO,
-                DVec3::new(0.5, 0.5, 0.0),
-                DVec3::new(0.5, 0.0, 0.5),
-                DVec3::new(0.0, 0.5, 0.5),
-            ];
-            let sites =
-                places.flat_map(|place| basis.map(|offset| DVec3::from_array(place.map(f64::from)) + offset));
+            let places = (0..side).flat_map(|i| (0..side).flat_map(move |j| (0..side).map(move |k| [i, j, k])));
+            let basis = [DVec3::ZERO, DVec3::new(0.5, 0.5, 0.0), DVec3::new(0.5, 0.0, 0.5), DVec3::new(0.0, 0.5, 0.5)];
+            let sites = places.flat_map(|place| basis.map(|offset| DVec3::from_array(place.map(f64::from)) + offset));
             // As many as the sites are, which they do not tell beforehand.
             let mut balls = Vec::with_capacity(count as usize);
             balls.extend(sites.take(count as usize).map(|site| {
@@ -295,8 +286,7 @@ mod tests {
             for count in [1, 2, 5, 1000] {
                 let balls = random(rule, count);
                 assert_eq!(balls.len(), count as usize, "{rule:?}");
-                let inside =
-                    |ball: &Ball| (ball.center + DVec3::new(0.0, 0.0, 3.0)).abs().max_element() <= 1.3;
+                let inside = |ball: &Ball| (ball.center + DVec3::new(0.0, 0.0, 3.0)).abs().max_element() <= 1.3;
                 assert!(balls.iter().all(|ball| inside(ball) && ball.radius > 0.0), "{rule:?} {count}");
             }
         }

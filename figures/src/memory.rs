@@ -32,10 +32,7 @@ mod tests {
                 panic!("{bytes} bytes are more than any machine has")
             };
             let megabytes = bytes.div_ceil(1_000_000);
-            assert_eq!(
-                error.to_string(),
-                format!("cannot get {megabytes} MB of memory for a picture; draw less")
-            );
+            assert_eq!(error.to_string(), format!("cannot get {megabytes} MB of memory for a picture; draw less"));
         }
     }
 }

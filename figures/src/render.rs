@@ -75,16 +75,11 @@ impl Renderer {
                 for left in (0..width).step_by(tile_width as usize) {
                     let right = width.min(left + tile_width);
                     hits += tile.trace(self, view, left..right, top..bottom);
-                    for (tile_row, line) in tile
-                        .pixels
-                        .chunks_exact((right - left) as usize)
-                        .zip(band.chunks_exact_mut(row_length))
+                    for (tile_row, line) in
+                        tile.pixels.chunks_exact((right - left) as usize).zip(band.chunks_exact_mut(row_length))
                     {
-                        for (color, pixel) in
-                            tile_row.iter().zip(line[3 * left as usize..].chunks_exact_mut(3))
-                        {
-                            pixel
-                                .copy_from_slice(&color.to_array().map(|channel| to_sample(channel, maxval)));
+                        for (color, pixel) in tile_row.iter().zip(line[3 * left as usize..].chunks_exact_mut(3)) {
+                            pixel.copy_from_slice(&color.to_array().map(|channel| to_sample(channel, maxval)));
                         }
                     }
                 }
@@ -124,9 +119,9 @@ impl Renderer {
                 let Look { paint, material } = &self.looks[self.triangle_looks[index] as usize];
                 let colors = self.vertex_colors.get(index).and_then(Option::as_ref);
                 let surface = match (colors, paint) {
-                    (Some(colors), _) => triangle
-                        .hit_barycentric(ray)
-                        .map_or(colors[0], |weights| interpolate(colors, weights)),
+                    (Some(colors), _) => {
+                        triangle.hit_barycentric(ray).map_or(colors[0], |weights| interpolate(colors, weights))
+                    }
                     (None, Paint::Color(color)) => *color,
                     (None, Paint::Image { .. }) => unreachable!("a triangle's look has a color"),
                 };
@@ -172,8 +167,7 @@ impl<'a> Tile<'a> {
         let samples = view.size().samples;
         self.rays.clear();
         self.across.clear();
-        self.across
-            .extend((samples * columns.start..samples * columns.end).map(|column| view.across(column)));
+        self.across.extend((samples * columns.start..samples * columns.end).map(|column| view.across(column)));
         for row in rows {
             self.down.clear();
             self.down.extend((samples * row..samples * (row + 1)).map(|row| view.down(row)));

@@ -91,12 +91,7 @@ impl Scene {
     ///
     /// # Errors
     /// More colours than can be numbered; the spheres are not added then.
-    pub fn add_spheres(
-        &mut self,
-        found: Spheres,
-        look: Option<u32>,
-        path: &Path,
-    ) -> Result<(), TooManyColors> {
+    pub fn add_spheres(&mut self, found: Spheres, look: Option<u32>, path: &Path) -> Result<(), TooManyColors> {
         let Spheres { spheres, mut color_indices, colors, notes } = found;
         self.warnings.extend(notes.into_iter().map(|note| format!("{}: {note}", file_name(path))));
         match look {
@@ -154,10 +149,9 @@ impl Scene {
     /// slope below `EDGE_ON`, are seen along the plane's normal, from the front or, where the plane runs from front to back,
     /// from the right.
     pub fn set_stage(&mut self) {
-        let (low, high) =
-            self.balls().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
-                (low.min(center - radius), high.max(center + radius))
-            });
+        let (low, high) = self.balls().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
+            (low.min(center - radius), high.max(center + radius))
+        });
         let (center, size) = (low.midpoint(high), (high / 2.0 - low / 2.0).length());
         let from = self
             .flat_normal(2.0 * size)
@@ -174,8 +168,7 @@ impl Scene {
             position: center + size * (x * right + y * up - z * forward),
             color: DVec3::from_array(color),
         };
-        self.lights =
-            vec![lamp([-3.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.36, 0.4, 0.48])];
+        self.lights = vec![lamp([-3.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.36, 0.4, 0.48])];
     }
 
     /// The unit normal, on either side, of the plane that all objects lie in; `None` if there is none, or if they lie on a line.
@@ -212,8 +205,7 @@ impl Scene {
         }
         let normal = along.cross(across).normalize();
         let height = FLAT * width;
-        let within =
-            |(center, radius): (DVec3, f64)| normal.dot(relative(center)).abs() + radius / size <= height;
+        let within = |(center, radius): (DVec3, f64)| normal.dot(relative(center)).abs() + radius / size <= height;
         self.balls().all(within).then_some(normal)
     }
 
@@ -231,8 +223,8 @@ impl Scene {
                 Paint::Image { texture, mirrored, filter } => {
                     sum.text(&format!("{mirrored} {filter:?} {} {}", texture.width(), texture.height()));
                     let middle = |texel: usize, count: usize| (texel as f64 + 0.5) / count as f64;
-                    for (row, column) in (0..texture.height())
-                        .flat_map(|row| (0..texture.width()).map(move |column| (row, column)))
+                    for (row, column) in
+                        (0..texture.height()).flat_map(|row| (0..texture.width()).map(move |column| (row, column)))
                     {
                         let (u, v) = (middle(column, texture.width()), middle(row, texture.height()));
                         sum.vector(texture.nearest(u, v));
@@ -342,8 +334,7 @@ impl Look {
 }
 
 /// What a material is unless it says otherwise; `docs/scene-format.md` states it.
-pub const DEFAULT_MATERIAL: Material =
-    Material { ambient: 0.1, diffuse: 0.8, specular: 0.3, shininess: 32.0 };
+pub const DEFAULT_MATERIAL: Material = Material { ambient: 0.1, diffuse: 0.8, specular: 0.3, shininess: 32.0 };
 
 /// Where a surface takes its colour from.
 #[derive(Debug)]
@@ -380,8 +371,7 @@ mod tests {
     fn looks_from(triangles: &[[DVec3; 3]], spheres: &[(DVec3, f64)]) -> DVec3 {
         let mut scene = Scene::empty();
         scene.triangles = triangles.iter().map(|&[a, b, c]| Triangle::new(a, b, c).unwrap()).collect();
-        scene.spheres =
-            spheres.iter().map(|&(center, radius)| Sphere::new(center, radius).unwrap()).collect();
+        scene.spheres = spheres.iter().map(|&(center, radius)| Sphere::new(center, radius).unwrap()).collect();
         scene.set_stage();
         // The lights turn with the camera: from the second, the first is to the left, above, and farther back.
         let [right, up, forward] = scene.camera.axes();

@@ -328,10 +328,8 @@ impl Checker<'_> {
         }
         let mut materials = BTreeMap::new();
         for (material, table) in &table.material {
-            materials.insert(
-                material.as_str(),
-                self.push(&mut scene.looks, table.span(), |_| self.look(material, table))?,
-            );
+            materials
+                .insert(material.as_str(), self.push(&mut scene.looks, table.span(), |_| self.look(material, table))?);
         }
         let mut bare = None;
         self.elements(&table, &materials, &mut bare, &mut scene)?;
@@ -351,8 +349,7 @@ impl Checker<'_> {
                 None => self.bare(&mut scene, &mut bare, mesh.file.span())?,
             };
             let path = self.path(&mesh.file)?;
-            let found =
-                obj::load(&path).map_err(|error| self.refuse(mesh.file.span(), Problem::Mesh(error)))?;
+            let found = obj::load(&path).map_err(|error| self.refuse(mesh.file.span(), Problem::Mesh(error)))?;
             scene.add_mesh(found, look, &path);
         }
         if scene.is_empty() {
@@ -364,8 +361,7 @@ impl Checker<'_> {
     /// The tables of the text, or those of a long one without its elements, and where groups of these are.
     fn tables(&self, group: usize) -> Result<(SceneTable, Vec<Range<usize>>), SceneError> {
         let long = self.text.len() > group;
-        if let Some(elements::Cut { rest, groups }) = long.then(|| elements::cut(self.text, group)).flatten()
-        {
+        if let Some(elements::Cut { rest, groups }) = long.then(|| elements::cut(self.text, group)).flatten() {
             let table = self.parsed(&rest)?;
             // Elements may be left whose headers are written otherwise: then their order among the others would be lost.
             if table.light.is_empty() && table.sphere.is_empty() && table.triangle.is_empty() {
@@ -411,9 +407,8 @@ impl Checker<'_> {
 
     fn camera(&self, table: &Spanned<CameraTable>) -> Result<Camera, SceneError> {
         let CameraTable { eye, look_at, up, fov, fit } = table.get_ref();
-        let point = |name, value: &Option<Vector>, default| {
-            value.as_ref().map_or(Ok(default), |value| self.point(name, value))
-        };
+        let point =
+            |name, value: &Option<Vector>, default| value.as_ref().map_or(Ok(default), |value| self.point(name, value));
         let eye = point("eye", eye, DVec3::ZERO)?;
         let look_at = point("look_at", look_at, eye + DVec3::NEG_Z)?;
         let up = point("up", up, DVec3::Y)?;
@@ -426,8 +421,7 @@ impl Checker<'_> {
     }
 
     fn look(&self, name: &str, table: &Spanned<MaterialTable>) -> Result<Look, SceneError> {
-        let MaterialTable { color, texture, mirrored, filter, ambient, diffuse, specular, shininess } =
-            table.get_ref();
+        let MaterialTable { color, texture, mirrored, filter, ambient, diffuse, specular, shininess } = table.get_ref();
         let paint = match (color, texture) {
             (Some(_), Some(_)) => return Err(self.refuse(table.span(), Problem::TwoPaints(name.to_owned()))),
             (None, None) => return Err(self.refuse(table.span(), Problem::NoPaint(name.to_owned()))),
@@ -486,9 +480,7 @@ impl Checker<'_> {
         let path = self.path(file)?;
         let found = xyz::load(&path, options);
         let found = found.map_err(|error| self.refuse(file.span(), Problem::Spheres(error)))?;
-        scene
-            .add_spheres(found, look, &path)
-            .map_err(|error| self.refuse(file.span(), Problem::TooManyColors(error)))
+        scene.add_spheres(found, look, &path).map_err(|error| self.refuse(file.span(), Problem::TooManyColors(error)))
     }
 
     fn triangle(
@@ -627,10 +619,7 @@ mod tests {
     fn both(text: &str) -> [Result<String, String>; 2] {
         [usize::MAX, 1].map(|group| {
             let checker = Checker { text, name: "a.toml", files: Files::Embedded, offset: 0 };
-            checker
-                .scene(group)
-                .map(|scene| format!("{scene:?}"))
-                .map_err(|error| format!("{error} {error:?}"))
+            checker.scene(group).map(|scene| format!("{scene:?}")).map_err(|error| format!("{error} {error:?}"))
         })
     }
 
@@ -649,9 +638,7 @@ mod tests {
             ),
         };
         let elements: String = (1..50).map(element).collect();
-        for text in
-            [head.to_owned() + &elements, elements.clone() + head, elements.clone() + head + &elements]
-        {
+        for text in [head.to_owned() + &elements, elements.clone() + head, elements.clone() + head + &elements] {
             let [whole, parts] = both(&text);
             assert!(whole.is_ok() && whole == parts, "{whole:?} {parts:?}");
         }
@@ -660,8 +647,7 @@ mod tests {
     #[test]
     fn an_error_in_a_part_has_its_place_in_the_whole() {
         let good = "[[light]]\nposition = [1, 2, 3]\n";
-        let end =
-            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 1, 1]\n";
+        let end = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 1, 1]\n";
         for bad in [
             "[[light]]\nposition = [1, nan, 3]\n",
             "[[light]]\nposition = [1, 2]\n",
@@ -694,8 +680,7 @@ mod tests {
 
     #[test]
     fn headers_that_are_written_otherwise_keep_their_order() {
-        let end =
-            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 1, 1]\n";
+        let end = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n[material.a]\ncolor = [1, 1, 1]\n";
         let light = |header: &str, x: u32| format!("{header}\nposition = [{x}, 2, 3]\n");
         let text = light("[[light]]", 1)
             + &light("[[\"light\"]]", 2)

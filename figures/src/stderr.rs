@@ -24,10 +24,7 @@ mod tests {
 
     #[test]
     fn nothing_that_steers_a_terminal_is_left() {
-        assert_eq!(
-            escaped("\u{1b}[2J\r\n\t\0\u{7f}\u{9b}1A\u{202e}"),
-            r"\u{1b}[2J\r\n\t\u{0}\u{7f}\u{9b}1A\u{202e}"
-        );
+        assert_eq!(escaped("\u{1b}[2J\r\n\t\0\u{7f}\u{9b}1A\u{202e}"), r"\u{1b}[2J\r\n\t\u{0}\u{7f}\u{9b}1A\u{202e}");
         // Text in any script stays, and so does a quote or a backslash.
         let plain = r#"Größe 大きさ "a\b" × ½"#;
         assert_eq!(escaped(plain), plain);

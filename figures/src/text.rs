@@ -23,7 +23,8 @@ pub(crate) fn without_mark(start: &[u8]) -> Result<&[u8], Utf16> {
 /// Returns a text as it may go to a terminal: control characters, and those that turn the direction of writing, are escaped
 /// as Rust escapes them.
 pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
-    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let turns =
+        |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let harmless = |c: char| !c.is_control() && !turns(c);
     if text.chars().all(harmless) {
         return Cow::Borrowed(text);
@@ -129,9 +130,6 @@ mod tests {
         assert_eq!(meant("gren"), Some("green"));
         assert_eq!(meant("grray"), Some("gray"));
         assert_eq!(meant("blau"), Some("blue"));
-        assert_eq!(
-            (meant("yellow"), meant(""), meant("x"), meant(&"r".repeat(1000))),
-            (None, None, None, None)
-        );
+        assert_eq!((meant("yellow"), meant(""), meant("x"), meant(&"r".repeat(1000))), (None, None, None, None));
     }
 }

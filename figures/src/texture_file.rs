@@ -20,9 +20,7 @@ fn texture(pixmap: Pixmap) -> Texture {
     let (width, height, maxval) = (pixmap.width(), pixmap.height(), pixmap.maxval());
     // As they are stored: a copy of a large image may be more than the memory.
     let texture = match pixmap.into_stored() {
-        Samples::Eight(samples) => {
-            Texture::from_bytes(width, height, samples, u8::try_from(maxval).unwrap_or(u8::MAX))
-        }
+        Samples::Eight(samples) => Texture::from_bytes(width, height, samples, u8::try_from(maxval).unwrap_or(u8::MAX)),
         Samples::Sixteen(samples) => Texture::new(width, height, samples, maxval),
     };
     texture.expect("a pixmap's invariant is a texture's")

@@ -24,8 +24,7 @@ impl FromStr for Tile {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts =
-            text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
         match parts {
             Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
             _ => Err("expected i/n with i from 1 to n, such as 3/16".to_owned()),
@@ -73,10 +72,7 @@ pub struct Label {
 impl fmt::Display for Label {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { rows: Range { start, end }, width, height, samples, scene, version } = self;
-        write!(
-            f,
-            "figures {version} rows {start}..{end} of {width}x{height} samples {samples} scene {scene:016x}"
-        )
+        write!(f, "figures {version} rows {start}..{end} of {width}x{height} samples {samples} scene {scene:016x}")
     }
 }
 
@@ -84,8 +80,7 @@ impl Label {
     /// Reads what [`Display`](fmt::Display) has written.
     fn parse(comment: &str) -> Option<Self> {
         let words: Vec<&str> = comment.split_whitespace().collect();
-        let ["figures", version, "rows", rows, "of", size, "samples", samples, "scene", scene] = words[..]
-        else {
+        let ["figures", version, "rows", rows, "of", size, "samples", samples, "scene", scene] = words[..] else {
             return None;
         };
         let (start, end) = rows.split_once("..")?;
@@ -175,9 +170,7 @@ pub enum MergeError {
         rows: Range<u32>,
     },
     /// The picture is larger than the memory.
-    #[error(
-        "cannot get {megabytes} MB of memory for {width} x {height} pixels; pnmcat -tb joins tiles in less"
-    )]
+    #[error("cannot get {megabytes} MB of memory for {width} x {height} pixels; pnmcat -tb joins tiles in less")]
     Memory {
         /// What the joined samples take, in units of 10^6 bytes.
         megabytes: u64,
@@ -209,9 +202,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
     let Some(first) = parts.first() else { return Err(MergeError::Nothing) };
     for part in &parts[1..] {
         let mut pairs = part.common().into_iter().zip(first.common());
-        if let Some(((what, found), (_, expected))) =
-            pairs.find(|((_, found), (_, expected))| found != expected)
-        {
+        if let Some(((what, found), (_, expected))) = pairs.find(|((_, found), (_, expected))| found != expected) {
             let (path, first) = (part.path.clone(), first.path.clone());
             return Err(MergeError::Stranger { path, first, what, found, expected });
         }
@@ -240,8 +231,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
     for part in parts {
         samples.extend(part.pixmap.into_samples());
     }
-    Ok(Pixmap::new(width as usize, height as usize, maxval, samples)
-        .expect("the rows were checked to be all there"))
+    Ok(Pixmap::new(width as usize, height as usize, maxval, samples).expect("the rows were checked to be all there"))
 }
 
 /// Reads a tile.
@@ -287,14 +277,7 @@ mod tests {
 
     #[test]
     fn a_label_reads_as_written() {
-        let label = Label {
-            rows: 3..7,
-            width: 10,
-            height: 9,
-            samples: 2,
-            scene: 0xBEEF,
-            version: "0.1.0".to_owned(),
-        };
+        let label = Label { rows: 3..7, width: 10, height: 9, samples: 2, scene: 0xBEEF, version: "0.1.0".to_owned() };
         assert_eq!(Label::parse(&label.to_string()), Some(label));
         for text in [
             "",

@@ -77,8 +77,7 @@ fn a_figure_is_its_scene_file() {
     for figure in 1..=6 {
         let built_in = stdout(folder.path(), &[&figure.to_string(), "--size", "48x64", "-o", "-"]);
         let scene = scene(figure);
-        let from_file =
-            stdout(folder.path(), &["render", scene.to_str().unwrap(), "--size", "48x64", "-o", "-"]);
+        let from_file = stdout(folder.path(), &["render", scene.to_str().unwrap(), "--size", "48x64", "-o", "-"]);
         assert!(built_in == from_file, "figure {figure}");
     }
 }
@@ -88,10 +87,7 @@ fn the_bytes_do_not_depend_on_threads() {
     let folder = folder();
     for figure in ["3", "6"] {
         let pictures = ["1", "2", "7"].map(|threads| {
-            stdout(
-                folder.path(),
-                &[figure, "--size", "101x67", "--samples", "2", "--threads", threads, "-o", "-"],
-            )
+            stdout(folder.path(), &[figure, "--size", "101x67", "--samples", "2", "--threads", threads, "-o", "-"])
         });
         assert!(pictures.iter().all(|picture| *picture == pictures[0]), "figure {figure}");
     }
@@ -132,10 +128,7 @@ fn without_an_argument_the_number_comes_from_stdin() {
     }
     for (answer, quoted) in [("", "\"\""), ("\n", "\"\""), ("7\n", "\"7\""), ("three\n", "\"three\"")] {
         let said = refusal(folder.path(), &[], answer, 2);
-        assert_eq!(
-            said,
-            format!("error: expected the number of a figure, 1 to 6, or \"all\", found {quoted}\n")
-        );
+        assert_eq!(said, format!("error: expected the number of a figure, 1 to 6, or \"all\", found {quoted}\n"));
     }
     assert!(files(folder.path()).is_empty(), "a wrong answer draws nothing");
 }
@@ -180,9 +173,8 @@ fn a_name_that_promises_what_is_not_written_is_refused_before_any_work() {
     let folder = folder();
     fs::write(folder.path().join("in.ppm"), b"P3 1 1 255 1 2 3").unwrap();
     let endings = [
-        "jpg", "JPEG", "tif", "tiff", "gif", "bmp", "webp", "svg", "pdf", "exr", "hdr", "pgm", "pbm", "pnm",
-        "pam", "jp2", "avif", "html", "md", "json", "toml", "xyz", "obj", "txt", "csv", "zip", "gz", "image",
-        "7z",
+        "jpg", "JPEG", "tif", "tiff", "gif", "bmp", "webp", "svg", "pdf", "exr", "hdr", "pgm", "pbm", "pnm", "pam",
+        "jp2", "avif", "html", "md", "json", "toml", "xyz", "obj", "txt", "csv", "zip", "gz", "image", "7z",
     ];
     for ending in endings {
         let name = format!("a.{ending}");
@@ -281,10 +273,8 @@ fn raw_plain_and_png_hold_the_same_pixels() {
     let folder = folder();
     for depth in ["8", "16"] {
         let pictures = ["ppm", "ppm-plain", "png"].map(|format| {
-            let bytes = stdout(
-                folder.path(),
-                &["6", "--size", "32x24", "--depth", depth, "--format", format, "-o", "-"],
-            );
+            let bytes =
+                stdout(folder.path(), &["6", "--size", "32x24", "--depth", depth, "--format", format, "-o", "-"]);
             rt_io::decode_image(&bytes, &rt_io::Limits::default()).unwrap().pixmap
         });
         assert_eq!(pictures[0].maxval(), if depth == "8" { 255 } else { 65535 });
@@ -315,8 +305,7 @@ fn more_samples_give_the_mean_of_their_colors() {
     for (x, y) in (0..15).flat_map(|y| (0..20).map(move |x| (x, y))) {
         for channel in 0..3 {
             let four = [(0, 0), (1, 0), (0, 1), (1, 1)];
-            let sum: u32 =
-                four.iter().map(|(i, j)| u32::from(single.pixel(2 * x + i, 2 * y + j)[channel])).sum();
+            let sum: u32 = four.iter().map(|(i, j)| u32::from(single.pixel(2 * x + i, 2 * y + j)[channel])).sum();
             let found = u32::from(mean.pixel(x, y)[channel]);
             assert!((4 * found).abs_diff(sum) <= 4, "pixel {x}, {y}: {found} is no quarter of {sum}");
         }
@@ -398,8 +387,7 @@ fn convert_keeps_the_depth_unless_told_otherwise() {
     stdout(folder.path(), &["convert", "eight.ppm", "back.ppm", "--depth", "16", "--format", "ppm-plain"]);
     let kept = fs::read(path("kept.ppm")).unwrap();
     assert_eq!(kept, b"P6\n2 1\n65535\n\x00\x00\x01\x01\xff\xff\x02\x02\x00\x01\x00\x80");
-    let pixels =
-        |name: &str| ppm::read_bytes(&fs::read(path(name)).unwrap(), &rt_io::Limits::default()).unwrap();
+    let pixels = |name: &str| ppm::read_bytes(&fs::read(path(name)).unwrap(), &rt_io::Limits::default()).unwrap();
     assert_eq!(pixels("eight.ppm").to_samples(), [0, 1, 255, 2, 0, 0]);
     assert_eq!(pixels("back.ppm").to_samples(), [0, 257, 65535, 514, 0, 0]);
 }

@@ -22,11 +22,7 @@ fn kills_leave_the_old_or_the_new_picture_whole() {
     let cases = ["3", "6"].map(|figure| {
         let picture = images.path().join(figure).with_extension("ppm");
         let arguments = format!("convert {} picture.ppm --format ppm-plain", picture.display());
-        succeed(
-            PROGRAM,
-            images.path(),
-            &format!("{figure} --size 320x240 --depth 16 -o {figure}.ppm --quiet"),
-        );
+        succeed(PROGRAM, images.path(), &format!("{figure} --size 320x240 --depth 16 -o {figure}.ppm --quiet"));
         let whole = folder();
         succeed(PROGRAM, whole.path(), &arguments);
         (files(whole.path()), arguments)

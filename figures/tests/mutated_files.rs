@@ -18,48 +18,29 @@ const SPHERES: [&str; 3] = [
     include_str!("../../tests/fuzz/seeds/xyz/plain.xyz"),
     include_str!("../../tests/fuzz/seeds/xyz/extended.xyz"),
 ];
-const MESHES: [&str; 2] = [
-    include_str!("../../tests/fuzz/seeds/obj/square.obj"),
-    include_str!("../../tests/fuzz/seeds/obj/notched.obj"),
-];
+const MESHES: [&str; 2] =
+    [include_str!("../../tests/fuzz/seeds/obj/square.obj"), include_str!("../../tests/fuzz/seeds/obj/notched.obj")];
 
 /// One of the files with one to four changes: a byte replaced, taken out, or some text put in.
 fn mutated(files: &'static [&'static str]) -> impl Strategy<Value = Vec<u8>> {
-    let snippets = [
-        "nan",
-        "inf",
-        "-1",
-        "1e999",
-        "0",
-        "99999999999999999999",
-        "\n",
-        "[",
-        "\"",
-        "=",
-        " ",
-        "#",
-        "é",
-        ".",
-        "/",
-    ];
+    let snippets =
+        ["nan", "inf", "-1", "1e999", "0", "99999999999999999999", "\n", "[", "\"", "=", " ", "#", "é", ".", "/"];
     let change = (any::<prop::sample::Index>(), 0..3, any::<u8>(), prop::sample::select(snippets.to_vec()));
-    (prop::sample::select(files.to_vec()), prop::collection::vec(change, 1..=4)).prop_map(
-        |(file, changes)| {
-            let mut bytes = file.as_bytes().to_vec();
-            for (index, kind, byte, snippet) in changes {
-                if bytes.is_empty() {
-                    break;
-                }
-                let at = index.index(bytes.len());
-                match kind {
-                    0 => bytes[at] = byte,
-                    1 => drop(bytes.remove(at)),
-                    _ => drop(bytes.splice(at..at, snippet.bytes())),
-                }
+    (prop::sample::select(files.to_vec()), prop::collection::vec(change, 1..=4)).prop_map(|(file, changes)| {
+        let mut bytes = file.as_bytes().to_vec();
+        for (index, kind, byte, snippet) in changes {
+            if bytes.is_empty() {
+                break;
             }
-            bytes
-        },
-    )
+            let at = index.index(bytes.len());
+            match kind {
+                0 => bytes[at] = byte,
+                1 => drop(bytes.remove(at)),
+                _ => drop(bytes.splice(at..at, snippet.bytes())),
+            }
+        }
+        bytes
+    })
 }
 
 proptest! {

@@ -51,8 +51,7 @@ fn second_opinion(text: &str) -> Vec<(Triangle, Option<[DVec3; 3]>)> {
         let at = |numbers: &[f64], index: u32| DVec3::from_slice(&numbers[3 * index as usize..]);
         for corners in mesh.indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|k| at(&mesh.positions, corners[k]));
-            let colors = (!mesh.vertex_color.is_empty())
-                .then(|| [0, 1, 2].map(|k| at(&mesh.vertex_color, corners[k])));
+            let colors = (!mesh.vertex_color.is_empty()).then(|| [0, 1, 2].map(|k| at(&mesh.vertex_color, corners[k])));
             let triangle = Triangle::new(a, b, c).unwrap();
             if !triangle.is_degenerate() {
                 found.push((triangle, colors));

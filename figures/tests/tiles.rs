@@ -49,8 +49,7 @@ fn every_split_gives_the_bytes_of_the_single_run() {
         assert_eq!(names.len(), of.min(30), "{of} tiles");
         assert!(succeed(folder.path(), &[&["merge", "-"], &names[..]].concat()) == whole, "{of} tiles");
         assert!(
-            succeed(folder.path(), &[&["merge", "-", "--format", "png"], &names[..]].concat())
-                .starts_with(b"\x89PNG")
+            succeed(folder.path(), &[&["merge", "-", "--format", "png"], &names[..]].concat()).starts_with(b"\x89PNG")
         );
     }
 }
@@ -101,10 +100,7 @@ fn gaps_overlaps_and_strangers_are_refused_by_name() {
         refusal(at, &["t1.ppm", "t2.ppm", "t3.ppm", "t2.ppm"]),
         "error: rows 10..20 are in t2.ppm and in t2.ppm\n"
     );
-    assert_eq!(
-        refusal(at, &["t3.ppm", "t2.ppm", "half.ppm"]),
-        "error: rows 10..15 are in half.ppm and in t2.ppm\n"
-    );
+    assert_eq!(refusal(at, &["t3.ppm", "t2.ppm", "half.ppm"]), "error: rows 10..15 are in half.ppm and in t2.ppm\n");
     for (stranger, what) in [
         ("other-scene.ppm", "scene"),
         ("other-samples.ppm", "samples 2, but 1"),

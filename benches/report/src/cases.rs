@@ -18,8 +18,7 @@ fn class<const M: usize>(
     valid: fn(&[f64; M]) -> bool,
     mut make: impl FnMut(&mut Random) -> [f64; M],
 ) -> Class<M> {
-    let seed =
-        name.bytes().fold(M as u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    let seed = name.bytes().fold(M as u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
     let mut random = Random::new(seed);
     let finite = |case: &[f64; M]| case.iter().all(|x| x.is_finite());
     let cases = std::iter::repeat_with(|| make(&mut random)).filter(|case| finite(case) && valid(case));
@@ -173,11 +172,8 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             // A ray in any direction at a triangle whose corners have two decimals, as many files of meshes have.
             let origin = r.vector(5.0);
             let [a, b, c] = [0; 3].map(|_| r.whole_vector(300).map(|x| x / 100.0));
-            let target = plus(
-                plus(a, plus(b, a, -1.0), 0.5 * r.within(0.0, 1.0)),
-                plus(c, a, -1.0),
-                0.5 * r.within(0.0, 1.0),
-            );
+            let target =
+                plus(plus(a, plus(b, a, -1.0), 0.5 * r.within(0.0, 1.0)), plus(c, a, -1.0), 0.5 * r.within(0.0, 1.0));
             join(&[&origin, &plus(target, origin, -1.0), &a, &b, &c])
         }),
         class("in tenths, at an edge", |r| {
@@ -198,8 +194,7 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let vertices = [0; 3].map(|_| r.vector(3.0));
             let (origin, target) = (r.vector(5.0), r.vector(1.0));
             let d = plus(target, origin, -1.0).map(|x| x * stretch);
-            let [origin, a, b, c] =
-                [origin, vertices[0], vertices[1], vertices[2]].map(|p| p.map(|x| x * scale));
+            let [origin, a, b, c] = [origin, vertices[0], vertices[1], vertices[2]].map(|p| p.map(|x| x * scale));
             join(&[&origin, &d, &a, &b, &c])
         }),
     ]
@@ -354,9 +349,7 @@ pub(super) fn reflection(count: usize) -> Vec<Class<6>> {
             join(&[&[r.near(2.0 * rest * n[0] / (nn - 2.0 * n[0] * n[0])), v[1], v[2]], &n])
         }),
         class("along an axis, signed zeros", |r| join(&[&r.signed_vector(2), &r.signed_vector(1)])),
-        class("subnormal", |r| {
-            join::<6>(&[&r.whole_vector(20), &r.whole_vector(20)]).map(|x| x * f64::from_bits(1))
-        }),
+        class("subnormal", |r| join::<6>(&[&r.whole_vector(20), &r.whole_vector(20)]).map(|x| x * f64::from_bits(1))),
         class("whole range", |r| {
             let (scale, stretch) = (size(r.within(-300.0, 300.0)), size(r.within(-300.0, 300.0)));
             join(&[&r.vector(1.0).map(|x| x * scale), &r.vector(1.0).map(|x| x * stretch)])
@@ -391,8 +384,7 @@ pub(super) fn mapping(count: usize) -> Vec<Class<3>> {
 
 /// Point, direction, normal, light, shininess.
 pub(super) fn phong(count: usize) -> Vec<Class<13>> {
-    let valid =
-        |case: &[f64; 13]| case[3..6] != [0.0; 3] && case[6..9] != [0.0; 3] && case[9..12] != case[..3];
+    let valid = |case: &[f64; 13]| case[3..6] != [0.0; 3] && case[6..9] != [0.0; 3] && case[9..12] != case[..3];
     let class = |name, make: fn(&mut Random) -> [f64; 13]| class(name, count, valid, make);
     vec![
         class("ordinary", |r| {
@@ -420,13 +412,7 @@ pub(super) fn phong(count: usize) -> Vec<Class<13>> {
         class("normal and direction of any length", |r| {
             let (normal, d) = (r.exponent(-100.0, 100.0), r.exponent(-100.0, 100.0));
             let shininess = [r.whole(1, 60)];
-            join(&[
-                &r.vector(2.0),
-                &r.unit().map(|x| x * d),
-                &r.unit().map(|x| x * normal),
-                &r.vector(5.0),
-                &shininess,
-            ])
+            join(&[&r.vector(2.0), &r.unit().map(|x| x * d), &r.unit().map(|x| x * normal), &r.vector(5.0), &shininess])
         }),
         class("light very near", |r| {
             let (point, normal) = (r.vector(2.0), r.unit());

@@ -73,10 +73,7 @@ fn entries(report: &Report) -> Vec<Entry> {
     for pictured in &report.pictures {
         entries.extend(pictured.methods.iter().map(|painted| Entry {
             place: format!("{}, {}", pictured.scene, painted.method),
-            errors: format!(
-                "{} of {} x {} pixels wrong",
-                painted.wrong_pixels, pictured.width, pictured.height
-            ),
+            errors: format!("{} of {} x {} pixels wrong", painted.wrong_pixels, pictured.width, pictured.height),
             time: painted.time,
         }));
     }
@@ -108,8 +105,7 @@ pub(super) fn whole(report: &Report) -> Result<(), String> {
             return Err(format!("expected a picture in base64 for {:?}", painted.method));
         }
     }
-    let times =
-        entries(report).into_iter().find(|entry| !(entry.time.median > 0.0 && entry.time.p95.is_finite()));
+    let times = entries(report).into_iter().find(|entry| !(entry.time.median > 0.0 && entry.time.p95.is_finite()));
     times.map_or(Ok(()), |entry| Err(format!("expected a time above 0 for {}", entry.place)))
 }
 
@@ -123,8 +119,7 @@ mod tests {
     #[test]
     fn errors_are_the_same_for_any_number_of_threads_and_a_difference_is_told() {
         let with_threads = |count| {
-            let pool =
-                rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads can be had");
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads can be had");
             pool.install(|| Report::measure(TINY))
         };
         let (first, second) = (with_threads(1), with_threads(2));
@@ -140,17 +135,12 @@ mod tests {
         assert_eq!(told.len(), 3, "{told:?}");
         assert!(told[0].starts_with("quadratic, textbook f32, ordinary: "), "{told:?}");
         let told = differences(&first, &broken, Some(1e5));
-        assert!(
-            told.iter().any(|line| line.starts_with("ray and sphere") && line.contains(" ns, now ")),
-            "{told:?}"
-        );
+        assert!(told.iter().any(|line| line.starts_with("ray and sphere") && line.contains(" ns, now ")), "{told:?}");
 
         let mut shorter = second.clone();
         shorter.kernels.remove(0);
         assert!(differences(&first, &shorter, None).iter().any(|line| line.ends_with("no longer measured")));
-        assert!(
-            differences(&shorter, &first, None).iter().any(|line| line.ends_with("not in the stored report"))
-        );
+        assert!(differences(&shorter, &first, None).iter().any(|line| line.ends_with("not in the stored report")));
 
         let mut hollow = second;
         hollow.kernels[0].methods[1].classes.clear();

@@ -103,11 +103,7 @@ pub(super) fn cull(effort: Effort) -> Kernel {
         for ((run, measured), time) in runs.iter().zip(&mut measured).zip(times) {
             let mut kept = vec![0; cases.len()];
             run(&mut kept);
-            measured.classes.push(Cell {
-                class: name.to_owned(),
-                errors: errors(&cases, &truths, &kept),
-                time,
-            });
+            measured.classes.push(Cell { class: name.to_owned(), errors: errors(&cases, &truths, &kept), time });
         }
     }
     Kernel {
@@ -197,11 +193,8 @@ fn balls<'a, T: Real + 'a>(cases: &'a [Case], margin: f64) -> Run<'a> {
             let sign = one.copysign(w[2]);
             let a = -(one / (sign + w[2]));
             let b = w[0] * w[1] * a;
-            let frame = [
-                [one + sign * w[0] * w[0] * a, sign * b, -(sign * w[0])],
-                [b, sign + w[1] * w[1] * a, -w[1]],
-                w,
-            ];
+            let frame =
+                [[one + sign * w[0] * w[0] * a, sign * b, -(sign * w[0])], [b, sign + w[1] * w[1] * a, -w[1]], w];
             let offset = frame.map(|axis| dot(axis, q));
             let (start, end) = (T::of(line.start), T::of(line.end));
             let slack = T::at_least(if margin > 0.0 { margin * T::HALF_ULP + line.error } else { 0.0 });
@@ -298,11 +291,7 @@ fn classes(count: usize) -> Vec<(&'static str, Vec<Case>)> {
         let [x, y, z] = plus(foot, outward, distance / length(outward));
         [x, y, z, radius]
     }
-    fn with_balls(
-        r: &mut Random,
-        (o, d): ([f64; 3], [f64; 3]),
-        mut ball: impl FnMut(&mut Random) -> [f64; 4],
-    ) -> Case {
+    fn with_balls(r: &mut Random, (o, d): ([f64; 3], [f64; 3]), mut ball: impl FnMut(&mut Random) -> [f64; 4]) -> Case {
         let balls = [0; WIDTH].map(|_| ball(r));
         Case { ray: [o[0], o[1], o[2], d[0], d[1], d[2]], balls }
     }
@@ -398,8 +387,7 @@ mod tests {
         .filter(|case| truth(case) == 0)
         .take(500)
         .collect();
-        let ours =
-            METHODS.iter().find(|method| method.name == "f32, the tree's margin").expect("it is there");
+        let ours = METHODS.iter().find(|method| method.name == "f32, the tree's margin").expect("it is there");
         let mut kept = vec![0; cases.len()];
         (ours.prepare)(&cases)(&mut kept);
         let restated: u32 = kept.iter().map(|kept| kept.count_ones()).sum();
@@ -411,9 +399,6 @@ mod tests {
         };
         let tree: usize = cases.iter().map(tests).sum();
         let share = f64::from(restated) / tree as f64;
-        assert!(
-            tree > 300 && (share - 1.0).abs() < 0.02,
-            "the tree keeps {tree}, the restated cull {restated}"
-        );
+        assert!(tree > 300 && (share - 1.0).abs() < 0.02, "the tree keeps {tree}, the restated cull {restated}");
     }
 }

@@ -106,11 +106,7 @@ fn savings(trees: &[Growth]) -> String {
     };
     let faster = |row: &Growth| {
         let ratio = plain.time.median / row.time.median;
-        if ratio >= 1.0 {
-            format!("{ratio:.0} times faster")
-        } else {
-            format!("{:.1} times slower", 1.0 / ratio)
-        }
+        if ratio >= 1.0 { format!("{ratio:.0} times faster") } else { format!("{:.1} times slower", 1.0 / ratio) }
     };
     let paid = 1e9 * ours.build / (plain.time.median - ours.time.median);
     format!(
@@ -140,8 +136,7 @@ fn price(report: &Report) -> Block {
         let textbook = kernel.methods.iter().find(|method| !method.ours && !method.name.ends_with("f32"));
         for (method, textbook) in full.zip(std::iter::repeat(textbook)) {
             let Some(textbook) = textbook else { continue };
-            let ratio =
-                |class: usize| method.classes[class].time.median / textbook.classes[class].time.median;
+            let ratio = |class: usize| method.classes[class].time.median / textbook.classes[class].time.median;
             let told = |class: usize| {
                 let Cell { class: name, time, .. } = &method.classes[class];
                 let name = if class == 0 { String::new() } else { format!("{name}: ") };
@@ -216,9 +211,11 @@ fn pictured(report: &Report) -> Block {
     for scene in &report.pictures {
         let pixels = scene.width as usize * scene.height as usize;
         let mut row = vec![format!("{} (objects: {}, pixels: {pixels})", scene.scene, scene.objects)];
-        row.extend(scene.methods.iter().map(|painted| {
-            format!("{}, {}", in_a_million(painted.wrong_pixels, pixels), nanoseconds(&painted.time))
-        }));
+        row.extend(
+            scene.methods.iter().map(|painted| {
+                format!("{}, {}", in_a_million(painted.wrong_pixels, pixels), nanoseconds(&painted.time))
+            }),
+        );
         rows.push(row);
     }
     for (group, name) in
@@ -273,8 +270,7 @@ fn growth(trees: &[Growth]) -> Block {
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for row in trees {
-        let plain =
-            trees.iter().find(|other| other.spheres == row.spheres).map_or(f64::NAN, |r| r.time.median);
+        let plain = trees.iter().find(|other| other.spheres == row.spheres).map_or(f64::NAN, |r| r.time.median);
         rows.push(vec![
             row.spheres.to_string(),
             row.method.clone(),

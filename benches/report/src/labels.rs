@@ -33,9 +33,8 @@ impl Labels {
         };
         let free = |place: &(bool, f64)| {
             let [left, right, top, bottom] = area(*place);
-            let apart = |other: &[f64; 4]| {
-                right <= other[0] || other[1] <= left || bottom <= other[2] || other[3] <= top
-            };
+            let apart =
+                |other: &[f64; 4]| right <= other[0] || other[1] <= left || bottom <= other[2] || other[3] <= top;
             left >= self.left && right <= self.right && self.taken.iter().all(apart)
         };
         let place = places.into_iter().find(free).unwrap_or((x > (self.left + self.right) / 2.0, 0.0));
@@ -43,8 +42,7 @@ impl Labels {
         let (anchor, at) = if place.0 { ("end", x - AWAY) } else { ("start", x + AWAY) };
         let baseline = y + place.1 + 4.5;
         let name = escape(name);
-        format!(r#"<text class="name" x="{at:.1}" y="{baseline:.1}" text-anchor="{anchor}">{name}</text>"#)
-            + "\n"
+        format!(r#"<text class="name" x="{at:.1}" y="{baseline:.1}" text-anchor="{anchor}">{name}</text>"#) + "\n"
     }
 }
 

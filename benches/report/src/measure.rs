@@ -181,12 +181,7 @@ pub(super) fn kernel<const M: usize, const N: usize>(
 }
 
 /// Returns the nanoseconds for one case, of each of `count` methods, which take turns. `run` runs one over all cases.
-pub(super) fn take_turns(
-    count: usize,
-    cases: usize,
-    effort: Effort,
-    mut run: impl FnMut(usize),
-) -> Vec<Time> {
+pub(super) fn take_turns(count: usize, cases: usize, effort: Effort, mut run: impl FnMut(usize)) -> Vec<Time> {
     let mut time = |method: usize, passes: u64| {
         let start = Instant::now();
         (0..passes).for_each(|_| run(method));

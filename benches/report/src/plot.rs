@@ -57,17 +57,7 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
             let wrong = if kernel.one_sided { total.lost as f64 / total.cases as f64 } else { share(&total) };
             let costs = [method.time().median, ordinary, all, wrong];
             let [x, x_all] = [ordinary, all].map(|error| across(error, decades));
-            Point {
-                method,
-                x,
-                x_all,
-                y: 0.0,
-                whisker: [0.0; 2],
-                wrong,
-                costs,
-                dominated: false,
-                on_front: false,
-            }
+            Point { method, x, x_all, y: 0.0, whisker: [0.0; 2], wrong, costs, dominated: false, on_front: false }
         })
         .collect();
     let times = points.iter().map(|point| point.method.time().median);
@@ -148,24 +138,17 @@ fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (l
     let (first, last) = decades;
     for decade in (first..=last).step_by(if last > 9 { 3 } else { 1 }) {
         let x = across(10f64.powi(decade), decades);
-        let text =
-            if decade < 4 { format!("{}", 10i32.pow(decade.unsigned_abs())) } else { format!("1e{decade}") };
+        let text = if decade < 4 { format!("{}", 10i32.pow(decade.unsigned_abs())) } else { format!("1e{decade}") };
         let _ = writeln!(svg, r#"<line class="grid" x1="{x:.1}" y1="{TOP}" x2="{x:.1}" y2="{bottom}"/>"#);
-        let _ =
-            writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
+        let _ = writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
     }
     for (text, x) in [("0", across(0.0, decades)), ("NaN", across(NAN_DISTANCE, decades))] {
         if text == "0" || last > 9 {
-            let _ = writeln!(
-                svg,
-                r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#,
-                bottom + 18.0
-            );
+            let _ = writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
         }
     }
     // Within a decade two or three lines would not tell that the axis is logarithmic.
-    let digits: &[f64] =
-        if high - low < 1.0 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0] } else { &[1.0, 2.0, 5.0] };
+    let digits: &[f64] = if high - low < 1.0 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0] } else { &[1.0, 2.0, 5.0] };
     let mut ticks: Vec<f64> = Vec::new();
     for decade in -1..8 {
         ticks.extend(digits.iter().map(|digit| digit * 10f64.powi(decade)));
@@ -173,12 +156,7 @@ fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (l
     for tick in ticks.into_iter().filter(|tick| (low..high).contains(&tick.log10())) {
         let y = TOP + (bottom - TOP) * (high - tick.log10()) / (high - low);
         let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{right}" y2="{y:.1}"/>"#);
-        let _ = writeln!(
-            svg,
-            r#"<text x="{:.1}" y="{:.1}" text-anchor="end">{tick}</text>"#,
-            LEFT - 8.0,
-            y + 4.0
-        );
+        let _ = writeln!(svg, r#"<text x="{:.1}" y="{:.1}" text-anchor="end">{tick}</text>"#, LEFT - 8.0, y + 4.0);
     }
     let zero = LEFT + COLUMN;
     let _ = writeln!(svg, r#"<line class="axis" x1="{zero}" y1="{TOP}" x2="{zero}" y2="{bottom}"/>"#);

@@ -92,8 +92,7 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
 
     let plain = |ray: &Ray| {
         let hits = spheres.iter().enumerate();
-        let hits =
-            hits.filter_map(|(index, sphere)| Some(Hit { index, t: sphere.closest(ray, within.clone())? }));
+        let hits = hits.filter_map(|(index, sphere)| Some(Hit { index, t: sphere.closest(ray, within.clone())? }));
         // The first of equal hits is kept: the lower index.
         hits.reduce(|best, hit| if hit.t < best.t { hit } else { best })
     };
@@ -198,12 +197,7 @@ pub(super) fn plot(growth: &[Growth]) -> String {
     while decade <= y_high {
         let at = y(10f64.powf(decade));
         let _ = writeln!(svg, r#"<line class="grid" x1="{left}" y1="{at:.1}" x2="{right}" y2="{at:.1}"/>"#);
-        let _ = writeln!(
-            svg,
-            r#"<text x="{}" y="{:.1}" text-anchor="end">1e{decade}</text>"#,
-            left - 8.0,
-            at + 4.0
-        );
+        let _ = writeln!(svg, r#"<text x="{}" y="{:.1}" text-anchor="end">1e{decade}</text>"#, left - 8.0, at + 4.0);
         decade += 1.0;
     }
     let mut names: Vec<&str> = Vec::new();
@@ -213,8 +207,7 @@ pub(super) fn plot(growth: &[Growth]) -> String {
         }
         let at = x(row.spheres as f64);
         if row.method == growth[0].method {
-            let _ =
-                writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{top}" x2="{at:.1}" y2="{bottom}"/>"#);
+            let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{top}" x2="{at:.1}" y2="{bottom}"/>"#);
             let _ = writeln!(svg, r#"<text x="{at:.1}" y="392" text-anchor="middle">{}</text>"#, row.spheres);
         }
     }

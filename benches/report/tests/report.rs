@@ -23,12 +23,9 @@ fn text(path: &Path) -> &str {
 
 /// The files of a folder and their bytes.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let entries =
-        fs::read_dir(folder).expect("the folder is there").map(|entry| entry.expect("an entry").path());
+    let entries = fs::read_dir(folder).expect("the folder is there").map(|entry| entry.expect("an entry").path());
     let mut files: Vec<(String, Vec<u8>)> = entries
-        .map(|path| {
-            (text(&path).rsplit('/').next().unwrap_or_default().to_owned(), fs::read(&path).expect("a file"))
-        })
+        .map(|path| (text(&path).rsplit('/').next().unwrap_or_default().to_owned(), fs::read(&path).expect("a file")))
         .collect();
     files.sort();
     files
@@ -53,9 +50,7 @@ fn a_report_written_again_from_its_json_has_the_same_bytes() {
     assert!(run(&["--from", text(&json), "--out", text(&second)]).status.success());
     let (first, second) = (contents(&first), contents(&second));
     let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
-    for name in
-        ["report.html", "report.md", "pictures.svg", "trees.svg", "quadratic.svg", "far-sphere-ours.png"]
-    {
+    for name in ["report.html", "report.md", "pictures.svg", "trees.svg", "quadratic.svg", "far-sphere-ours.png"] {
         assert!(names.contains(&name), "{name} is missing from {names:?}");
     }
     assert!(first == second, "the bytes of {names:?} differ");

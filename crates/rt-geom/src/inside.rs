@@ -182,9 +182,8 @@ impl<const Q: usize> FixedTurns<Q> {
         let [e, f, q] = [b, c, p].map(|end| Fixed::difference(&end, &a));
         let (ee, ef, ff) = (Fixed::<S>::dot(&e, &e), Fixed::<S>::dot(&e, &f), Fixed::<S>::dot(&f, &f));
         let (eq, fq) = (Fixed::<S>::dot(&e, &q), Fixed::<S>::dot(&f, &q));
-        let minor = |a: &Fixed<S>, d: &Fixed<S>, b: &Fixed<S>, c: &Fixed<S>| {
-            Fixed::<Q>::product(a, d) - Fixed::product(b, c)
-        };
+        let minor =
+            |a: &Fixed<S>, d: &Fixed<S>, b: &Fixed<S>, c: &Fixed<S>| Fixed::<Q>::product(a, d) - Fixed::product(b, c);
         let (sum, b, c) = (minor(&ee, &ff, &ef, &ef), minor(&ff, &eq, &ef, &fq), minor(&ee, &fq, &ef, &eq));
         Some(Self { turns: [sum - b - c, b, c], sum })
     }
@@ -238,9 +237,8 @@ type Integer = Dyadic<136>;
 fn integer_turns(point: DVec3, triangle: &Triangle) -> ([Integer; 3], [Integer; 3]) {
     let [a, b, c] = triangle.vertices();
     let n = integer_cross(&integer_difference(b, a), &integer_difference(c, a));
-    let turn = |from, to| {
-        integer_dot(&n, &integer_cross(&integer_difference(to, from), &integer_difference(point, from)))
-    };
+    let turn =
+        |from, to| integer_dot(&n, &integer_cross(&integer_difference(to, from), &integer_difference(point, from)));
     ([turn(b, c), turn(c, a), turn(a, b)], n)
 }
 
@@ -277,10 +275,7 @@ fn exact_coplanar(point: DVec3, triangle: &Triangle) -> bool {
         .unwrap_or_else(|| integer_coplanar(point, triangle))
 }
 
-fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(
-    point: DVec3,
-    triangle: &Triangle,
-) -> Option<bool> {
+fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(point: DVec3, triangle: &Triangle) -> Option<bool> {
     let [a, b, c] = triangle.vertices();
     let points = [a, b, c, point];
     let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
@@ -306,11 +301,8 @@ mod tests {
         let (mut counts, mut narrow) = ([0; 3], 0);
         for k in 0..300 {
             let s = f64::from(k) / 300.0;
-            let triangle = Triangle::new(
-                DVec3::new(0.1, 0.2, 0.3),
-                DVec3::new(1.1, -0.3, 0.7),
-                DVec3::new(0.4, 0.9, -0.2),
-            );
+            let triangle =
+                Triangle::new(DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.1, -0.3, 0.7), DVec3::new(0.4, 0.9, -0.2));
             let triangle = triangle.unwrap();
             let [a, b, c] = triangle.vertices();
             // interior; on an edge but for rounding; a vertex
@@ -339,9 +331,6 @@ mod tests {
                 }
             }
         }
-        assert!(
-            counts[0] > 200 && counts[1] > 200 && counts[2] >= 300 && narrow > 300,
-            "{counts:?} {narrow}"
-        );
+        assert!(counts[0] > 200 && counts[1] > 200 && counts[2] >= 300 && narrow > 300, "{counts:?} {narrow}");
     }
 }

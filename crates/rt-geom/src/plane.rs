@@ -32,11 +32,8 @@ mod tests {
 
     #[test]
     fn vertices_satisfy_the_equation() {
-        let triangle = Triangle::new(
-            DVec3::new(1.0, 0.5, -3.0),
-            DVec3::new(-2.0, 1.5, -4.0),
-            DVec3::new(0.25, -1.0, -2.5),
-        );
+        let triangle =
+            Triangle::new(DVec3::new(1.0, 0.5, -3.0), DVec3::new(-2.0, 1.5, -4.0), DVec3::new(0.25, -1.0, -2.5));
         let triangle = triangle.unwrap();
         let plane = plane_by_pseudo_inverse(&triangle);
         for vertex in triangle.vertices() {
@@ -50,8 +47,7 @@ mod tests {
         let triangle = Triangle::new(DVec3::X, DVec3::Y, -DVec3::X).unwrap();
         let plane = plane_by_pseudo_inverse(&triangle);
         assert_eq!(plane.z, 0.0, "found {plane}");
-        let worst =
-            triangle.vertices().map(|vertex| (plane.dot(vertex) - 1.0).abs()).into_iter().fold(0.0, f64::max);
+        let worst = triangle.vertices().map(|vertex| (plane.dot(vertex) - 1.0).abs()).into_iter().fold(0.0, f64::max);
         assert!(worst >= 1.0, "a vertex misses the equation by {worst}");
     }
 }

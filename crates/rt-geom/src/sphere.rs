@@ -193,18 +193,9 @@ impl Sphere {
 
     /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of the root.
     #[inline(never)]
-    fn offer_far(
-        &self,
-        near: f64,
-        far: f64,
-        error: f64,
-        prepared: &PreparedRay,
-        limit: f64,
-    ) -> Option<Candidate> {
+    fn offer_far(&self, near: f64, far: f64, error: f64, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
         let t = if near + error < prepared.start { far } else { near };
-        prepared.admit((t - error, t + error), limit, || {
-            self.exact_candidate(prepared.ray, prepared.within(), limit)
-        })
+        prepared.admit((t - error, t + error), limit, || self.exact_candidate(prepared.ray, prepared.within(), limit))
     }
 
     #[cold]

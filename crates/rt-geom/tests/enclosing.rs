@@ -124,9 +124,7 @@ const CLASSES: &[(&str, Make)] = &[
     ("coplanar", |random| {
         let (from, a, b) = (random.point(), random.direction(), random.direction());
         let flat = random.below(2) as f64 * 0.2;
-        some(random, 2..20, |random| {
-            sphere(from + random.both() * a + random.both() * b, flat * random.unit())
-        })
+        some(random, 2..20, |random| sphere(from + random.both() * a + random.both() * b, flat * random.unit()))
     }),
     ("cospherical", |random| {
         let (center, radius) = (random.point(), 0.1 * random.below(3) as f64);
@@ -188,9 +186,7 @@ const CLASSES: &[(&str, Make)] = &[
         let thin = 10.0_f64.powf(-16.0 * random.unit());
         let thinner = thin * if random.below(2) == 0 { 1.0 } else { random.unit() * 1e-3 };
         let radius = if random.below(2) == 0 { 0.0 } else { thin };
-        some(random, 3..12, |random| {
-            sphere(random.point() * DVec3::new(1.0, thin, thinner), radius * random.unit())
-        })
+        some(random, 3..12, |random| sphere(random.point() * DVec3::new(1.0, thin, thinner), radius * random.unit()))
     }),
     ("nearly nested", |random| {
         let big = sphere(random.point(), 1.0);
@@ -215,9 +211,8 @@ const CLASSES: &[(&str, Make)] = &[
     }),
     ("all bits", |random| {
         some(random, 1..8, |random| {
-            let mut any = || {
-                f64::from_bits(random.next() & !(3 << 61)) * if random.below(9) == 0 { 1e300 } else { 1.0 }
-            };
+            let mut any =
+                || f64::from_bits(random.next() & !(3 << 61)) * if random.below(9) == 0 { 1e300 } else { 1.0 };
             sphere(DVec3::new(any(), any(), any()), any().abs())
         })
     }),
@@ -249,8 +244,7 @@ fn contains(outer: &Sphere, inner: &Sphere) -> bool {
     }
     let room = square(exact(outer.radius()) - exact(inner.radius()));
     let (a, b) = (outer.center(), inner.center());
-    let distance =
-        square(exact(a.x) - exact(b.x)) + square(exact(a.y) - exact(b.y)) + square(exact(a.z) - exact(b.z));
+    let distance = square(exact(a.x) - exact(b.x)) + square(exact(a.y) - exact(b.y)) + square(exact(a.z) - exact(b.z));
     distance <= room
 }
 
@@ -382,9 +376,8 @@ fn certificate(spheres: &[Sphere], support: &[Sphere]) -> Option<Certificate> {
             }
         }
     }
-    let most = |x: &Point| {
-        spheres.iter().map(|sphere| reach(x, sphere)).max_by(|a, b| a.partial_cmp(b).unwrap()).unwrap()
-    };
+    let most =
+        |x: &Point| spheres.iter().map(|sphere| reach(x, sphere)).max_by(|a, b| a.partial_cmp(b).unwrap()).unwrap();
     let bound = mean / &total - number(2.0) * most(&x) * root(dot(&pull, &pull)) / total;
     let bound = if bound > number(largest.radius()) { bound } else { number(largest.radius()) };
     let rounded: Point = std::array::from_fn(|i| number(x[i].to_f64().value()));
@@ -395,10 +388,7 @@ fn certificate(spheres: &[Sphere], support: &[Sphere]) -> Option<Certificate> {
 /// doubles is good enough; that shows where sets lie anywhere.)
 fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
     for sphere in spheres {
-        assert!(
-            contains(&answer.sphere, sphere),
-            "{class}: {sphere:?} sticks out of {answer:?} in {spheres:?}"
-        );
+        assert!(contains(&answer.sphere, sphere), "{class}: {sphere:?} sticks out of {answer:?} in {spheres:?}");
     }
     let less = answer.sphere.radius().next_down();
     let less = Sphere::new(answer.sphere.center(), less);
@@ -432,8 +422,7 @@ fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
         number(answer.lower_bound) <= certificate.ceiling,
         "{class}: the bound of {answer:?} is too high in {spheres:?}"
     );
-    let floor =
-        if certificate.floor > certificate.bound { certificate.floor } else { certificate.bound.clone() };
+    let floor = if certificate.floor > certificate.bound { certificate.floor } else { certificate.bound.clone() };
     let tight = (&floor - &certificate.bound) / &radius;
     let spacing = answer.sphere.center().abs().max_element() * f64::EPSILON / answer.sphere.radius();
     let tight = tight.to_f64().value();
@@ -484,8 +473,7 @@ fn the_order_of_the_spheres_does_not_matter() {
             random.shuffle(&mut spheres);
             let second = enclosing_sphere(&spheres).expect("order does not matter");
             let (a, b) = (first.sphere.radius(), second.sphere.radius());
-            let limit =
-                2.0 * f64::EPSILON * a.min(b) + if *class == "far offset" { 0.0 } else { slack(&first) };
+            let limit = 2.0 * f64::EPSILON * a.min(b) + if *class == "far offset" { 0.0 } else { slack(&first) };
             assert!((a - b).abs() <= limit, "{class}: {a} {b} {spheres:?}");
         }
     }
@@ -513,8 +501,7 @@ fn a_sphere_outside_of_the_support_can_go() {
 fn large_sets_are_enclosed_and_minimal() {
     let mut random = Random(17);
     for (count, duplicates) in [(2049, 0), (5000, 0), (10_000, 4999), (70_000, 0)] {
-        let mut spheres: Vec<Sphere> =
-            (0..count).map(|_| sphere(random.direction(), 0.01 * random.unit())).collect();
+        let mut spheres: Vec<Sphere> = (0..count).map(|_| sphere(random.direction(), 0.01 * random.unit())).collect();
         let same = spheres[0];
         spheres[..duplicates * 2].fill(same);
         let answer = enclosing_sphere(&spheres).expect("finite");

@@ -13,8 +13,7 @@ fn check(point: DVec3, [a, b, c]: [DVec3; 3]) -> Inside {
     let triangle = Triangle::new(a, b, c).unwrap();
     let [a, b, c, p] = [a, b, c, point].map(vector);
     let n = cross(&minus(&b, &a), &minus(&c, &a));
-    let turns =
-        [(&b, &c), (&c, &a), (&a, &b)].map(|(from, to)| dot(&n, &cross(&minus(to, from), &minus(&p, from))));
+    let turns = [(&b, &c), (&c, &a), (&a, &b)].map(|(from, to)| dot(&n, &cross(&minus(to, from), &minus(&p, from))));
     let square = dot(&n, &n);
     let degenerate = square.sign() == Ordering::Equal;
     let signs = [0, 1, 2].map(|i| turns[i].sign());

@@ -8,9 +8,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use reference::sphere::Equation;
-use reference::{
-    Rng, cases, cross, dot, exact, holds, is_correctly_rounded, minus, scale, scale_vector, vector,
-};
+use reference::{Rng, cases, cross, dot, exact, holds, is_correctly_rounded, minus, scale, scale_vector, vector};
 use rt_geom::{Ray, Side, Sphere};
 use rt_math::Roots;
 
@@ -33,11 +31,9 @@ fn check(origin: DVec3, direction: DVec3, center: DVec3, radius: f64, rng: &mut 
     }
     // every kind of end that a root can meet
     let some = if list.is_empty() { rng.uniform() } else { rng.pick(&list) };
-    let ends =
-        [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
+    let ends = [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
     let random = |rng: &mut Rng| rng.pick(&ends);
-    let ranges =
-        [0.0..f64::INFINITY, f64::from_bits(1)..f64::INFINITY, random(rng)..random(rng), random(rng)..some];
+    let ranges = [0.0..f64::INFINITY, f64::from_bits(1)..f64::INFINITY, random(rng)..random(rng), random(rng)..some];
     for within in ranges {
         let expected = list.iter().copied().find(|&t| holds(&within, t));
         let found = sphere.closest(&ray, within.clone());
@@ -131,12 +127,7 @@ fn origin_on_the_surface_or_just_off() {
             let size = f64::from(1 + rng.below(1000));
             let p = size * integer_frame(rng)[0];
             let origin = center + p;
-            (
-                if rng.bits() & 1 == 0 { origin } else { rng.nudge_vector(origin, 1) },
-                direction,
-                center,
-                3.0 * size,
-            )
+            (if rng.bits() & 1 == 0 { origin } else { rng.nudge_vector(origin, 1) }, direction, center, 3.0 * size)
         } else {
             let origin = center + rng.vector_with_exponent(-20..20);
             let radius = rng.nudge((origin - center).length(), 2);
@@ -326,10 +317,7 @@ fn normals_and_hit_points_keep_their_bounds() {
         assert!(dot(&x, &x).cmp(&limit) != Ordering::Greater, "{sphere:?} {point:?} gives {normal:?}");
         let excess = &dot(&n, &n) - &exact(1.0);
         let limit = exact(8.3 * U);
-        assert!(
-            excess.cmp(&limit) == Ordering::Less && (-&excess).cmp(&limit) == Ordering::Less,
-            "{normal:?}"
-        );
+        assert!(excess.cmp(&limit) == Ordering::Less && (-&excess).cmp(&limit) == Ordering::Less, "{normal:?}");
     }
     let point = Sphere::new(DVec3::ONE, 0.0).unwrap();
     assert!(point.normal(DVec3::ONE).is_nan());

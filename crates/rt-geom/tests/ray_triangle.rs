@@ -27,14 +27,9 @@ fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Rng) 
         assert!(is_rounded_quotient(t, &truth.height, &truth.slope), "t = {t:e}: {}", context());
     }
     let some = whole.unwrap_or(0.5);
-    let ends =
-        [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
-    let ranges = [
-        0.0..f64::INFINITY,
-        f64::from_bits(1)..f64::INFINITY,
-        rng.pick(&ends)..rng.pick(&ends),
-        rng.pick(&ends)..some,
-    ];
+    let ends = [f64::NEG_INFINITY, -0.0, 0.0, some, some.next_up(), some.next_down(), f64::INFINITY, f64::NAN];
+    let ranges =
+        [0.0..f64::INFINITY, f64::from_bits(1)..f64::INFINITY, rng.pick(&ends)..rng.pick(&ends), rng.pick(&ends)..some];
     for within in ranges {
         let expected = whole.filter(|&t| holds(&within, t));
         let found = triangle.closest(&ray, within.clone());
@@ -168,11 +163,9 @@ fn without_area() {
 #[test]
 fn without_area_but_for_rounding() {
     let counts = run(15, |rng| {
-        let along =
-            rng.pick(&[DVec3::new(1.0, 3.0, 5.0), DVec3::new(-3.0, 5.0, 7.0), DVec3::new(5.0, 1.0, -7.0)]);
+        let along = rng.pick(&[DVec3::new(1.0, 3.0, 5.0), DVec3::new(-3.0, 5.0, 7.0), DVec3::new(5.0, 1.0, -7.0)]);
         // 49 bits, so that seven times as much is a double.
-        let vertices =
-            [0; 3].map(|_| scale(f64::from(rng.below(1 << 24)) * 33_554_393.0, -rng.below(8)) * along);
+        let vertices = [0; 3].map(|_| scale(f64::from(rng.below(1 << 24)) * 33_554_393.0, -rng.below(8)) * along);
         let origin = scale_vector(rng.vector(), 50);
         (origin, vertices[0] - origin, vertices)
     });
@@ -243,8 +236,7 @@ fn every_exponent() {
 fn scenes_scaled_to_the_ends_of_the_range() {
     let counts = run(11, |rng| {
         let (k, l) = (rng.below(2090) - 1070, rng.below(2090) - 1070);
-        let vertices =
-            if rng.bits() & 1 == 0 { triangle(rng) } else { [0; 3].map(|_| rng.small_vector(3) / 2.0) };
+        let vertices = if rng.bits() & 1 == 0 { triangle(rng) } else { [0; 3].map(|_| rng.small_vector(3) / 2.0) };
         let origin = rng.small_vector(8) / 4.0;
         let target = if rng.bits() & 1 == 0 { vertices[0] } else { aim(rng, vertices) };
         (scale_vector(origin, k), scale_vector(target - origin, l), vertices.map(|v| scale_vector(v, k)))

@@ -72,8 +72,7 @@ fn soup(random: &mut Random, n: usize, size: f64) -> Vec<Triangle> {
 /// A closed surface: a sphere of quadrilaterals, each cut in two.
 fn globe(n: usize) -> Vec<Triangle> {
     let point = |i: usize, j: usize| {
-        let (u, v) =
-            (i as f64 / n as f64 * std::f64::consts::TAU, j as f64 / n as f64 * std::f64::consts::PI);
+        let (u, v) = (i as f64 / n as f64 * std::f64::consts::TAU, j as f64 / n as f64 * std::f64::consts::PI);
         DVec3::new(v.sin() * u.cos(), v.cos(), v.sin() * u.sin())
     };
     let mut out = Vec::new();
@@ -442,9 +441,7 @@ fn equal_primitives_cost_what_one_does_and_the_lowest_index_answers() {
             for (i, &sphere) in spheres.iter().enumerate() {
                 assert_eq!(tree.shape(i), Shape::Sphere(sphere));
             }
-            for origin in
-                [DVec3::new(-3.0, 0.0, 0.0), DVec3::new(-3.0, 0.125, 0.25), DVec3::new(-3.0, 5.0, 5.0)]
-            {
+            for origin in [DVec3::new(-3.0, 0.0, 0.0), DVec3::new(-3.0, 0.125, 0.25), DVec3::new(-3.0, 5.0, 5.0)] {
                 let ray = Ray::new(origin, DVec3::X).unwrap();
                 let scene = Scene {
                     name: "",
@@ -459,10 +456,7 @@ fn equal_primitives_cost_what_one_does_and_the_lowest_index_answers() {
                 assert_eq!(bits(hit), expected, "{many} copies, {ray:?}");
                 // Beside other primitives, two leaf blocks of each kind may be filled up with copies.
                 let (work, limit) = (visits.nodes + visits.leaves, 2 * (least.nodes + least.leaves) + 4);
-                assert!(
-                    work <= limit && visits.tests <= least.tests + 64,
-                    "{many}: {visits:?} for {least:?}"
-                );
+                assert!(work <= limit && visits.tests <= least.tests + 64, "{many}: {visits:?} for {least:?}");
                 if spheres.len().max(triangles.len()) == many {
                     assert_eq!(visits, least, "{many} copies and nothing else");
                 }

@@ -114,8 +114,7 @@ fn ray(rng: &mut Rng, scene: &Scene) -> Option<Ray> {
         _ => match (spheres.is_empty(), triangles.is_empty()) {
             (false, all) if all || rng.below(2) == 0 => {
                 let sphere = rng.pick(spheres);
-                let out =
-                    rng.pick(&[0.0, 0.5, 1.0, 1.0 - 1e-12, 1.0 + 1e-12]) * along.any_orthonormal_vector();
+                let out = rng.pick(&[0.0, 0.5, 1.0, 1.0 - 1e-12, 1.0 + 1e-12]) * along.any_orthonormal_vector();
                 sphere.center() + sphere.radius() * out
             }
             (_, false) => {
@@ -210,8 +209,7 @@ fn compare(seed: u64, rays: usize) -> Counts {
         let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         let level = ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"][turn % 6];
         let tree = tree.clone().with_simd(level).unwrap_or(tree);
-        let halving =
-            (turn % 8 == 0).then(|| SphereTree::new(scene.spheres.clone(), scene.triangles.clone()));
+        let halving = (turn % 8 == 0).then(|| SphereTree::new(scene.spheres.clone(), scene.triangles.clone()));
         let hits: Vec<Vec<Hit>> = rays.iter().map(|ray| all_hits(&scene, ray)).collect();
         let mut check = |within: &Range<f64>, chosen: Range<usize>| {
             let (rays, hits) = (&rays[chosen.clone()], &hits[chosen]);

@@ -28,16 +28,9 @@ fn to_grid(v: DVec3) -> DVec3 {
 }
 
 impl Mesh {
-    fn new(
-        name: &'static str,
-        vertices: Vec<DVec3>,
-        faces: Vec<[usize; 3]>,
-        inside: DVec3,
-        convex: bool,
-    ) -> Self {
+    fn new(name: &'static str, vertices: Vec<DVec3>, faces: Vec<[usize; 3]>, inside: DVec3, convex: bool) -> Self {
         // Closed: each edge is used once in each direction.
-        let mut edges: Vec<(usize, usize)> =
-            faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
+        let mut edges: Vec<(usize, usize)> = faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
         edges.sort_unstable();
         for &(a, b) in &edges {
             assert!(edges.binary_search(&(b, a)).is_ok(), "{name} is open at {a}-{b}");
@@ -95,8 +88,7 @@ impl Mesh {
     fn prism(name: &'static str, polygon: &[(f64, f64)], inside: DVec3, convex: bool) -> Self {
         let n = polygon.len();
         let at = |z: f64| polygon.iter().map(move |&(x, y)| DVec3::new(x, y, z));
-        let mut faces: Vec<[usize; 3]> =
-            (1..n - 1).flat_map(|i| [[0, i + 1, i], [n, n + i, n + i + 1]]).collect();
+        let mut faces: Vec<[usize; 3]> = (1..n - 1).flat_map(|i| [[0, i + 1, i], [n, n + i, n + i + 1]]).collect();
         for i in 0..n {
             let j = (i + 1) % n;
             faces.extend([[i, j, n + j], [i, n + j, n + i]]);

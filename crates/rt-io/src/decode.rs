@@ -73,9 +73,7 @@ pub enum DecodeError {
         message: String,
     },
     /// The operating system has not enough memory.
-    #[error(
-        "not enough memory for {width} x {height} pixels: {bytes} more bytes; scale the picture down first"
-    )]
+    #[error("not enough memory for {width} x {height} pixels: {bytes} more bytes; scale the picture down first")]
     OutOfMemory {
         /// Number of columns.
         width: u32,
@@ -164,8 +162,7 @@ fn read_file(path: &Path, limits: &Limits) -> Result<Decoded, DecodeError> {
     let mut bytes = Vec::new();
     if let Some(length) = length.filter(|&length| length <= most) {
         // One byte more lets the reader see the end without growing.
-        let reserved =
-            bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1));
+        let reserved = bytes.try_reserve_exact(usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1));
         reserved.map_err(|error| DecodeError::Read(error.into()))?;
     }
     reader.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(DecodeError::Read)?;

@@ -99,12 +99,7 @@ impl Pixmap {
     /// # Panics
     /// If `x >= width` or `y >= height`.
     pub fn pixel(&self, x: usize, y: usize) -> [u16; 3] {
-        assert!(
-            x < self.width && y < self.height,
-            "pixel ({x}, {y}) of a {} x {} picture",
-            self.width,
-            self.height
-        );
+        assert!(x < self.width && y < self.height, "pixel ({x}, {y}) of a {} x {} picture", self.width, self.height);
         let start = self.channels * (y * self.width + x);
         let places = [0, 1, 2].map(|channel: usize| start + channel.min(self.channels - 1));
         match &self.samples {
@@ -169,9 +164,7 @@ impl Pixmap {
         let (from, to) = (u32::from(self.maxval), u32::from(maxval));
         // One division per value and not per sample. 65535² + 65535/2 still fits in 32 bits.
         let table: Vec<u16> = (0..=from)
-            .map(|v| {
-                u16::try_from((v * to + from / 2) / from).expect("v <= from, so the result is at most `to`")
-            })
+            .map(|v| u16::try_from((v * to + from / 2) / from).expect("v <= from, so the result is at most `to`"))
             .collect();
         let look_up = |sample: u16| table[usize::from(sample)];
         let samples = match (&self.samples, maxval <= 255) {
@@ -256,9 +249,7 @@ mod tests {
 
     #[test]
     fn scaling_rounds_to_the_nearest_in_exact_arithmetic() {
-        for (from, to) in
-            [(1, 255), (7, 255), (255, 7), (255, 65535), (65535, 255), (1000, 999), (65535, 65534)]
-        {
+        for (from, to) in [(1, 255), (7, 255), (255, 7), (255, 65535), (65535, 255), (1000, 999), (65535, 65534)] {
             let samples: Vec<u16> = (0..=from).flat_map(|v| [v; 3]).collect();
             let pixmap = Pixmap::new(usize::from(from) + 1, 1, from, samples).unwrap();
             let scaled = pixmap.scaled(to);

@@ -84,10 +84,7 @@ pub enum SaveError {
 /// # Ok(())
 /// # }
 /// ```
-pub fn save_atomically(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), SaveError> {
+pub fn save_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), SaveError> {
     let open_error = |source| SaveError::Open { path: path.to_path_buf(), source };
     let write_error = |source| SaveError::Write { path: path.to_path_buf(), source };
     if path.as_os_str().is_empty() {

@@ -175,13 +175,8 @@ fn kinds_of_tiff_are_read_or_refused_by_name() {
     let kind = |bits: &[u16], photometric: u16, more: &[(u16, &[u16])], raster: &[u8]| {
         let samples = [u16::try_from(bits.len()).unwrap()];
         let photometric = [photometric];
-        let mut tags: Vec<(u16, &[u16])> = vec![
-            (WIDTH, &[2]),
-            (HEIGHT, &[1]),
-            (BITS, bits),
-            (PHOTOMETRIC, &photometric),
-            (SAMPLES, &samples),
-        ];
+        let mut tags: Vec<(u16, &[u16])> =
+            vec![(WIDTH, &[2]), (HEIGHT, &[1]), (BITS, bits), (PHOTOMETRIC, &photometric), (SAMPLES, &samples)];
         tags.extend(more);
         decode(&tiff(&tags, raster))
     };
@@ -198,36 +193,18 @@ fn kinds_of_tiff_are_read_or_refused_by_name() {
     assert_eq!(read(&[8], 0, &[], &[1, 200]), (255, vec![254, 254, 254, 55, 55, 55], false));
     assert_eq!(read(&[1], 1, &[], &[0x40]), (255, vec![0, 0, 0, 255, 255, 255], false));
     assert_eq!(read(&[1], 0, &[], &[0x40]), (255, vec![255, 255, 255, 0, 0, 0], false));
-    assert_eq!(
-        read(&[16], 1, &[], &[1, 2, 3, 4]),
-        (65535, vec![0x201, 0x201, 0x201, 0x403, 0x403, 0x403], false)
-    );
-    assert_eq!(
-        read(&[16], 0, &[], &[1, 0, 0, 0]),
-        (65535, vec![65534, 65534, 65534, 65535, 65535, 65535], false)
-    );
+    assert_eq!(read(&[16], 1, &[], &[1, 2, 3, 4]), (65535, vec![0x201, 0x201, 0x201, 0x403, 0x403, 0x403], false));
+    assert_eq!(read(&[16], 0, &[], &[1, 0, 0, 0]), (65535, vec![65534, 65534, 65534, 65535, 65535, 65535], false));
     // Two and four bits; grey with alpha, and with another sample.
     assert_eq!(read(&[2], 1, &[], &[0x60]), (255, vec![85, 85, 85, 170, 170, 170], false));
     assert_eq!(read(&[4], 0, &[], &[0x0e]), (255, vec![255, 255, 255, 17, 17, 17], false));
     assert_eq!(read(&[8; 2], 1, &[(EXTRA, &[2])], &[1, 255, 2, 254]), (255, vec![1, 1, 1, 2, 2, 2], true));
-    assert_eq!(
-        read(&[8; 2], 0, &[(EXTRA, &[0])], &[1, 255, 2, 254]),
-        (255, vec![254, 254, 254, 253, 253, 253], false)
-    );
+    assert_eq!(read(&[8; 2], 0, &[(EXTRA, &[0])], &[1, 255, 2, 254]), (255, vec![254, 254, 254, 253, 253, 253], false));
     // Colour: interleaved and in planes, with alpha.
     assert_eq!(read(&[8; 3], 2, &[], &[1, 2, 3, 4, 5, 6]), (255, vec![1, 2, 3, 4, 5, 6], false));
-    assert_eq!(
-        read(&[8; 4], 2, &[(EXTRA, &[2])], &[1, 2, 3, 255, 4, 5, 6, 255]),
-        (255, vec![1, 2, 3, 4, 5, 6], false)
-    );
-    assert_eq!(
-        read(&[8; 4], 2, &[(EXTRA, &[2])], &[1, 2, 3, 255, 4, 5, 6, 9]),
-        (255, vec![1, 2, 3, 4, 5, 6], true)
-    );
-    assert_eq!(
-        read(&[8; 4], 2, &[(EXTRA, &[0])], &[1, 2, 3, 255, 4, 5, 6, 9]),
-        (255, vec![1, 2, 3, 4, 5, 6], false)
-    );
+    assert_eq!(read(&[8; 4], 2, &[(EXTRA, &[2])], &[1, 2, 3, 255, 4, 5, 6, 255]), (255, vec![1, 2, 3, 4, 5, 6], false));
+    assert_eq!(read(&[8; 4], 2, &[(EXTRA, &[2])], &[1, 2, 3, 255, 4, 5, 6, 9]), (255, vec![1, 2, 3, 4, 5, 6], true));
+    assert_eq!(read(&[8; 4], 2, &[(EXTRA, &[0])], &[1, 2, 3, 255, 4, 5, 6, 9]), (255, vec![1, 2, 3, 4, 5, 6], false));
 
     // A palette, of 16-bit colours or of 8 in 16.
     let mut palette = [0; 768];
@@ -277,9 +254,7 @@ fn a_tiff_in_strips_tiles_and_planes_is_read_alike() {
     let expected: Vec<u16> = (0..width * height)
         .flat_map(|index| [0, 1, 2].map(|channel| value(place(index).0, place(index).1, channel)))
         .collect();
-    for (planar, tile) in
-        [(1, None), (2, None), (1, Some((16, 16))), (2, Some((16, 16))), (2, Some((48, 32)))]
-    {
+    for (planar, tile) in [(1, None), (2, None), (1, Some((16, 16))), (2, Some((16, 16))), (2, Some((48, 32)))] {
         let (across, down) = tile.unwrap_or((width, 8));
         let planes: &[&[u16]] = if planar == 2 { &[&[0], &[1], &[2]] } else { &[&[0, 1, 2]] };
         let mut chunks = Vec::new();
@@ -289,8 +264,7 @@ fn a_tiff_in_strips_tiles_and_planes_is_read_alike() {
                     // The last strip has fewer rows, the last tiles are filled up.
                     let rows = if tile.is_some() { down } else { down.min(height - top) };
                     let pixels = (0..rows).flat_map(|y| (0..across).map(move |x| (left + x, top + y)));
-                    let samples =
-                        pixels.flat_map(|(x, y)| channels.iter().map(move |&channel| value(x, y, channel)));
+                    let samples = pixels.flat_map(|(x, y)| channels.iter().map(move |&channel| value(x, y, channel)));
                     chunks.push(samples.map(|sample| u8::try_from(sample).unwrap()).collect::<Vec<u8>>());
                 }
             }
@@ -313,8 +287,7 @@ fn a_tiff_in_strips_tiles_and_planes_is_read_alike() {
             tags.push((278, &down)); // RowsPerStrip
             tiff_in_chunks(&tags, &slices, [273, 279])
         };
-        let decoded =
-            decode(&file).unwrap_or_else(|error| panic!("{planar:?} {tile:?}: {}", full_message(&error)));
+        let decoded = decode(&file).unwrap_or_else(|error| panic!("{planar:?} {tile:?}: {}", full_message(&error)));
         assert_eq!(decoded.pixmap.to_samples(), expected, "{planar:?} {tile:?}");
     }
 }
@@ -462,8 +435,7 @@ fn files_that_end_early_are_refused() {
     let whole = rgb_png(40, 30, &[77; 3600]);
     let plain = include_bytes!("images/plain.tiff");
     let lzw = include_bytes!("images/lzw.tiff");
-    for (name, file) in
-        [("PNG", &whole[..]), ("JPEG", BASELINE), ("JPEG", PROGRESSIVE), ("TIFF", plain), ("TIFF", lzw)]
+    for (name, file) in [("PNG", &whole[..]), ("JPEG", BASELINE), ("JPEG", PROGRESSIVE), ("TIFF", plain), ("TIFF", lzw)]
     {
         assert!(decode(file).is_ok());
         let needed = match name {
@@ -476,10 +448,7 @@ fn files_that_end_early_are_refused() {
         };
         for length in 8..needed {
             let text = decode(&file[..length]).expect_err("was read").to_string();
-            assert!(
-                text == format!("the {name} ends early") || text == format!("broken {name}"),
-                "{length}: {text}"
-            );
+            assert!(text == format!("the {name} ends early") || text == format!("broken {name}"), "{length}: {text}");
         }
     }
 }
@@ -495,10 +464,7 @@ fn what_is_no_image_is_named() {
     assert_eq!(message(b"GIF89a......"), "GIF is not read; convert it to PNG or PPM first");
     assert_eq!(message(b"BM.........."), "BMP is not read; convert it to PNG or PPM first");
     assert_eq!(message(b"RIFF....WEBPVP8 "), "WebP is not read; convert it to PNG or PPM first");
-    assert_eq!(
-        message(b"P3 1 1 255 1 2"),
-        "byte 14: the file ends inside the raster: expected 3 samples, found 2"
-    );
+    assert_eq!(message(b"P3 1 1 255 1 2"), "byte 14: the file ends inside the raster: expected 3 samples, found 2");
     assert_eq!(message(b"P4 1 1 \x80"), "byte 0: `P4` is not read; convert it with netpbm: pamdepth 255");
 }
 
@@ -510,8 +476,7 @@ fn sizes_beyond_the_limit_or_the_file_are_refused() {
     assert!(decode_image(&file, &Limits { max_pixels: 1200 }).is_ok());
     let error = decode_image(BASELINE, &Limits { max_pixels: 19 * 13 - 1 }).unwrap_err();
     assert_eq!(error.to_string(), "19 x 13 pixels are more than the limit of 246");
-    let error =
-        decode_image(include_bytes!("images/lzw.tiff"), &Limits { max_pixels: 19 * 13 - 1 }).unwrap_err();
+    let error = decode_image(include_bytes!("images/lzw.tiff"), &Limits { max_pixels: 19 * 13 - 1 }).unwrap_err();
     assert_eq!(error.to_string(), "19 x 13 pixels are more than the limit of 246");
 
     let mut claims = file.clone();
@@ -558,10 +523,7 @@ fn a_file_is_read_by_its_content_and_errors_name_it() {
     let missing = folder.join("missing.png");
     assert_eq!(
         message(&missing, Limits::default()),
-        format!(
-            "cannot read the image {}: reading failed: No such file or directory (os error 2)",
-            missing.display()
-        )
+        format!("cannot read the image {}: reading failed: No such file or directory (os error 2)", missing.display())
     );
     assert_eq!(
         message(&folder, Limits::default()),

@@ -65,10 +65,7 @@ const MOST: usize = 64 << 20;
 
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0_u32, |crc, byte| {
-        (0..8).fold(
-            crc ^ u32::from(*byte),
-            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
-        )
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
     })
 }
 
@@ -87,11 +84,8 @@ fn png_that_claims(width: u32, height: u32, depth: u8, color: u8, padding: usize
 }
 
 fn jpeg_that_claims(width: u16, height: u16, progressive: bool, padding: usize) -> Vec<u8> {
-    let file: &[u8] = if progressive {
-        include_bytes!("images/progressive.jpg")
-    } else {
-        include_bytes!("images/baseline.jpg")
-    };
+    let file: &[u8] =
+        if progressive { include_bytes!("images/progressive.jpg") } else { include_bytes!("images/baseline.jpg") };
     let mut bytes = file.to_vec();
     let marker = [0xff, if progressive { 0xc2 } else { 0xc0 }];
     let frame = bytes.windows(2).position(|window| window == marker).unwrap();

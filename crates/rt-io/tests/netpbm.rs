@@ -13,12 +13,8 @@ use rt_io::{Limits, Pixmap, decode_image, png};
 fn netpbm(command: &str, input: &[u8]) -> Option<Vec<u8>> {
     let mut words = command.split_whitespace();
     let tool = words.next().unwrap();
-    let spawned = Command::new(tool)
-        .args(words)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn();
+    let spawned =
+        Command::new(tool).args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = match spawned {
         Ok(child) => child,
         Err(error) => {
@@ -116,8 +112,7 @@ fn assert_same_pixels(pixmap: &Pixmap, grey: bool, encoder: &str, decoder: &str,
         input = pgm;
     }
     if encoder.contains("-g3") || encoder.contains("-g4") || encoder.contains("bits1") {
-        let Some(pbm) = netpbm("pamditherbw -threshold", &input).and_then(|pam| netpbm("pamtopnm", &pam))
-        else {
+        let Some(pbm) = netpbm("pamditherbw -threshold", &input).and_then(|pam| netpbm("pamtopnm", &pam)) else {
             return;
         };
         input = pbm;
@@ -143,13 +138,7 @@ fn png_has_the_pixels_of_pngtopnm() {
     for maxval in [1, 3, 15, 255, 65535] {
         for grey in [false, true] {
             for options in ["", "-interlace", "-force", "-compression=0", "-transparent=black"] {
-                assert_same_pixels(
-                    &picture(37, 23, maxval, grey),
-                    grey,
-                    &format!("pnmtopng {options}"),
-                    "pngtopnm",
-                    0,
-                );
+                assert_same_pixels(&picture(37, 23, maxval, grey), grey, &format!("pnmtopng {options}"), "pngtopnm", 0);
             }
         }
     }
@@ -192,20 +181,13 @@ fn tiff_has_the_pixels_of_tifftopnm() {
         }
     }
     // A palette of 8-bit indices.
-    let samples =
-        (0..40 * 9).flat_map(|index| picture(16, 13, 255, false).pixel(index % 16, index % 13)).collect();
+    let samples = (0..40 * 9).flat_map(|index| picture(16, 13, 255, false).pixel(index % 16, index % 13)).collect();
     let palette = Pixmap::new(40, 9, 255, samples).unwrap();
     for options in ["-none", "-lzw", "-flate -predictor=2", "-packbits"] {
         assert_same_pixels(&palette, false, &format!("pamtotiff -color {options}"), "tifftopnm", 0);
     }
     for options in ["-none", "-g4", "-lzw", "-packbits", "-none -miniswhite", "-none -minisblack"] {
-        assert_same_pixels(
-            &picture(37, 23, 255, true),
-            true,
-            &format!("pamtotiff {options} bits1"),
-            "tifftopnm",
-            0,
-        );
+        assert_same_pixels(&picture(37, 23, 255, true), true, &format!("pamtotiff {options} bits1"), "tifftopnm", 0);
     }
 }
 
@@ -228,8 +210,7 @@ fn jpeg_is_near_to_djpeg() {
     if !has_libjpeg_turbo() {
         return;
     }
-    let codings =
-        ["", "-progressive", "-optimize", "-restart 1B", "-progressive -restart 2", "-rgb", "-baseline"];
+    let codings = ["", "-progressive", "-optimize", "-restart 1B", "-progressive -restart 2", "-rgb", "-baseline"];
     for (width, height) in [(1, 1), (8, 8), (17, 13), (33, 65), (3, 2), (2, 3), (64, 48)] {
         // The last column and row of halved chroma, and few columns, are filled up in another way.
         let alike = |length: usize| length % 2 == 1 || length.is_multiple_of(16);
@@ -239,23 +220,11 @@ fn jpeg_is_near_to_djpeg() {
                 let samplings = [("1x1", WHOLE), ("2x1", halved), ("1x2", halved), ("2x2", halved)];
                 for (sample, most) in samplings {
                     let encoder = format!("cjpeg -quality {quality} -sample {sample} {coding}");
-                    assert_same_pixels(
-                        &picture(width, height, 255, false),
-                        false,
-                        &encoder,
-                        "djpeg -pnm",
-                        most,
-                    );
+                    assert_same_pixels(&picture(width, height, 255, false), false, &encoder, "djpeg -pnm", most);
                 }
                 if coding != "-rgb" {
                     let encoder = format!("cjpeg -quality {quality} {coding}");
-                    assert_same_pixels(
-                        &picture(width, height, 255, true),
-                        true,
-                        &encoder,
-                        "djpeg -pnm",
-                        WHOLE,
-                    );
+                    assert_same_pixels(&picture(width, height, 255, true), true, &encoder, "djpeg -pnm", WHOLE);
                 }
             }
         }

@@ -31,9 +31,7 @@ fn helper_process() {
             let pixmap = Pixmap::new(8000, 3000, 65535, vec![65535; 72_000_000]).unwrap();
             png::write(&pixmap, &mut io::sink()).map_err(|error| error.to_string())
         }
-        _ => {
-            read_image(Path::new(&path), &Limits::default()).map(|_| ()).map_err(|error| full_message(&error))
-        }
+        _ => read_image(Path::new(&path), &Limits::default()).map(|_| ()).map_err(|error| full_message(&error)),
     };
     println!("\nsays: {says:?}");
 }

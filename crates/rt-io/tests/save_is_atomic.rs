@@ -30,8 +30,7 @@ impl Folder {
     /// The names of all files, sorted.
     fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
-        let mut names: Vec<_> =
-            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
     }
@@ -188,8 +187,8 @@ fn the_bytes_reach_the_disk_before_they_get_the_name() {
         eprintln!("SKIPPED: no C compiler called cc");
         return;
     }
-    let [library, log_variable] = [("LD_PRELOAD", &library), ("SPY_LOG", &log)]
-        .map(|(name, path)| format!("{name}={}", path.display()));
+    let [library, log_variable] =
+        [("LD_PRELOAD", &library), ("SPY_LOG", &log)].map(|(name, path)| format!("{name}={}", path.display()));
     let wrapper = ["env", library.as_str(), log_variable.as_str()];
     assert_eq!(helper_says(&wrapper, &target).as_deref(), Some("saved"));
 
@@ -239,8 +238,7 @@ fn only_dead_temporaries_of_the_same_target_are_removed() {
     living.lock().unwrap();
     save_text(&folder.join("a.ppm"), "new").unwrap();
     let mut expected = others.map(str::to_string).to_vec();
-    expected
-        .extend(["a.ppm", ".a.ppm.00000000000000aa.tmp", ".a.ppm.00000000000000bb.tmp"].map(str::to_string));
+    expected.extend(["a.ppm", ".a.ppm.00000000000000aa.tmp", ".a.ppm.00000000000000bb.tmp"].map(str::to_string));
     expected.sort();
     assert_eq!(folder.names(), expected);
 }
@@ -251,14 +249,11 @@ fn a_full_disk_leaves_the_old_file_and_no_temporary() {
     let folder = Folder::new("full");
     let script = r#"mount -t tmpfs -o size=64k none "$RT_IO_FOLDER" && echo old > "$RT_IO_TARGET" && "$0" "$@";
         ls -A "$RT_IO_FOLDER"; cat "$RT_IO_TARGET""#;
-    let output = helper(
-        &["unshare", "--mount", "--map-root-user", "sh", "-c", script],
-        "once",
-        &folder.join("image.ppm"),
-    )
-    .env("RT_IO_FOLDER", &folder.0)
-    .stderr(Stdio::piped())
-    .output();
+    let output =
+        helper(&["unshare", "--mount", "--map-root-user", "sh", "-c", script], "once", &folder.join("image.ppm"))
+            .env("RT_IO_FOLDER", &folder.0)
+            .stderr(Stdio::piped())
+            .output();
     match output {
         Ok(output) if output.stderr.is_empty() => {
             let text = String::from_utf8(output.stdout).unwrap();
@@ -305,11 +300,7 @@ fn a_place_that_cannot_be_written_is_named() {
 
     assert_eq!(
         message(&folder.join("missing/image.ppm")),
-        format!(
-            "{}: the folder {} does not exist; create it first",
-            show("missing/image.ppm"),
-            show("missing")
-        )
+        format!("{}: the folder {} does not exist; create it first", show("missing/image.ppm"), show("missing"))
     );
     assert_eq!(message(&folder.0), format!("{} is a folder, not a file", folder.0.display()));
     assert_eq!(message(&folder.join("new/")), format!("{} is a folder, not a file", show("new/")));

@@ -57,17 +57,12 @@ pub(crate) fn is_rounding_of(x: f64, compare: impl Fn(&Exact) -> Ordering) -> bo
         let order = if negative { compare(&-midpoint).reverse() } else { compare(&midpoint) };
         order != outside && (order != Ordering::Equal || bits & 1 == 0)
     };
-    (bits == 0 || not_beyond(bits - 1, Ordering::Less))
-        && (x.is_infinite() || not_beyond(bits, Ordering::Greater))
+    (bits == 0 || not_beyond(bits - 1, Ordering::Less)) && (x.is_infinite() || not_beyond(bits, Ordering::Greater))
 }
 
 /// The value of the double with these bits, not negative; infinity stands for 2^1024, its place in the sequence.
 fn position(bits: u64) -> Exact {
-    if bits == f64::INFINITY.to_bits() {
-        exact(2f64.powi(1023)) * exact(2.0)
-    } else {
-        exact(f64::from_bits(bits))
-    }
+    if bits == f64::INFINITY.to_bits() { exact(2f64.powi(1023)) * exact(2.0) } else { exact(f64::from_bits(bits)) }
 }
 
 /// The number of random cases per class: 10 000, or `long` with the environment variable `RT_LONG` set.
@@ -97,8 +92,7 @@ impl Rng {
 
     /// An integer of the range.
     pub(crate) fn integer(&mut self, range: Range<i32>) -> i32 {
-        range.start
-            + i32::try_from(self.bits() % u64::from(range.end.abs_diff(range.start))).expect("a small range")
+        range.start + i32::try_from(self.bits() % u64::from(range.end.abs_diff(range.start))).expect("a small range")
     }
 
     /// Any finite double: all exponents alike, subnormals and zeros among them, some with few bits.

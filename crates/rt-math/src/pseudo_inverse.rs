@@ -119,17 +119,7 @@ fma_dispatch! {
 
 #[expect(clippy::too_many_arguments, reason = "as above")]
 #[inline(always)]
-fn sums_kernel<const FMA: bool>(
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
-    g: f64,
-    h: f64,
-    i: f64,
-) -> DVec3 {
+fn sums_kernel<const FMA: bool>(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 {
     let m = [a, b, c, d, e, f, g, h, i];
     regular::row_sums::<FMA>(&m).unwrap_or_else(|| undecided_sums(&DMat3::from_cols_array(&m)))
 }
@@ -201,8 +191,7 @@ mod tests {
             for _ in 0..cases(100_000) / 10 {
                 let m = class(&mut random);
                 let entries = m.to_cols_array();
-                let regular =
-                    |inverse: Option<DMat3>| inverse.map(|matrix| PseudoInverse { matrix, rank: 3 });
+                let regular = |inverse: Option<DMat3>| inverse.map(|matrix| PseudoInverse { matrix, rank: 3 });
                 let fused = regular(regular::inverse::<true>(&entries));
                 let stages = [
                     regular(regular::inverse::<false>(&entries)),

@@ -219,8 +219,7 @@ fn double_double_roots<const FMA: bool>(a: f64, b: f64, c: f64) -> Option<Roots>
     let number = DoubleDouble::<FMA>::new;
     let z = number(b.abs()) + d.sqrt();
     let sign = number(2f64.copysign(-b));
-    let round =
-        |x: DoubleDouble<FMA>| round_if_certain(x.high(), x.low(), x.high().abs() * DOUBLE_DOUBLE_ERROR);
+    let round = |x: DoubleDouble<FMA>| round_if_certain(x.high(), x.low(), x.high().abs() * DOUBLE_DOUBLE_ERROR);
     let (x, y) = (round(z / (sign * number(a)))?, round(sign * number(c) / z)?);
     Some(if x < y { Roots::Two(x, y) } else { Roots::Two(y, x) })
 }
@@ -317,8 +316,7 @@ mod tests {
             Roots::None | Roots::All => [0, 0],
         };
         for other in [kernel::<true>(a, b, c), solve_quadratic(a, b, c)] {
-            let same = core::mem::discriminant(&found) == core::mem::discriminant(&other)
-                && bits(found) == bits(other);
+            let same = core::mem::discriminant(&found) == core::mem::discriminant(&other) && bits(found) == bits(other);
             assert!(same, "{input}: {found:?} without FMA, {other:?} with it");
         }
         let [a, b, c] = [a, b, c].map(exact);
@@ -386,21 +384,14 @@ mod tests {
 
     #[test]
     fn benign_equations_are_decided_by_the_filter() {
-        let [filter, double_double, fixed, integers] =
-            check_class(20, |rng| [0; 3].map(|_| rng.with_exponent(-3..3)));
-        assert!(
-            filter > 1_000 * (double_double + fixed + integers),
-            "{filter} {double_double} {fixed} {integers}"
-        );
+        let [filter, double_double, fixed, integers] = check_class(20, |rng| [0; 3].map(|_| rng.with_exponent(-3..3)));
+        assert!(filter > 1_000 * (double_double + fixed + integers), "{filter} {double_double} {fixed} {integers}");
     }
 
     #[test]
     fn roots_of_any_doubles_are_correctly_rounded() {
         let [filter, double_double, _, integers] = check_class(21, |rng| [0; 3].map(|_| rng.finite()));
-        assert!(
-            filter > 1_000 && double_double > 1_000 && integers > 100,
-            "{filter} {double_double} {integers}"
-        );
+        assert!(filter > 1_000 && double_double > 1_000 && integers > 100, "{filter} {double_double} {integers}");
     }
 
     #[test]
@@ -442,10 +433,7 @@ mod tests {
             let midpoint = (1_u64 << 53) | rng.bits() >> 11 | 1;
             let w = (rng.bits() % (2 << rng.below(20))) | 1;
             let power = |rng: &mut Rng| 2f64.powi(rng.integer(-100..100));
-            #[expect(
-                clippy::cast_precision_loss,
-                reason = "even, hence exact; and the rounding that is wanted"
-            )]
+            #[expect(clippy::cast_precision_loss, reason = "even, hence exact; and the rounding that is wanted")]
             let (b, c) = ((midpoint - w) as f64, (u128::from(midpoint) * u128::from(w)) as f64);
             let (s, t) = (power(rng), power(rng));
             let sign = if rng.below(2) == 0 { 1.0 } else { -1.0 };
@@ -499,8 +487,7 @@ mod tests {
             let t = (1..).step_by(2).find(fits).expect("one in two does");
             let b = t.wrapping_mul(inverse) % (1 << 54);
             let c = (u128::from(midpoint) * u128::from(b) - u128::from(t)) >> 54;
-            let [i, j, k] =
-                [[11, -116, -64], [970, -1074, -1074], [960, -500, 0], [100, 0, -200]][rng.below(4)];
+            let [i, j, k] = [[11, -116, -64], [970, -1074, -1074], [960, -500, 0], [100, 0, -200]][rng.below(4)];
             let scale = |x: f64, k: i32| x * 2f64.powi(k / 2) * 2f64.powi(k - k / 2);
             let sign = if rng.below(2) == 0 { 1.0 } else { -1.0 };
             [scale(1.0 + f64::EPSILON, k), scale(b as f64, i), scale(sign * c as f64, j)]
@@ -515,8 +502,7 @@ mod tests {
             let k = rng.integer(-60..10);
             let near_one = 1.0 + f64::from(rng.integer(-3..4)) * f64::EPSILON;
             let a = near_one * 2f64.powi(k);
-            let b =
-                rng.with_exponent(1022..1024).abs().max(f64::from_bits(f64::MAX.to_bits() - rng.bits() % 8));
+            let b = rng.with_exponent(1022..1024).abs().max(f64::from_bits(f64::MAX.to_bits() - rng.bits() % 8));
             let range = [-1074..1024, 900..1024][rng.below(2)].clone();
             let c = rng.with_exponent(range);
             let b = b * 2f64.powi(k.min(0));
@@ -559,8 +545,7 @@ mod tests {
     fn one_root_may_be_far_smaller_than_the_other() {
         let [filter, ..] = check_class(28, |rng| {
             let (small, large) = (rng.with_exponent(-150..-20), rng.with_exponent(20..150));
-            [[1.0, large, small], [small, large, rng.with_exponent(-5..5)], [large, small, -large]]
-                [rng.below(3)]
+            [[1.0, large, small], [small, large, rng.with_exponent(-5..5)], [large, small, -large]][rng.below(3)]
         });
         assert!(filter > 10_000, "{filter}");
     }
@@ -616,9 +601,7 @@ mod tests {
     fn a_coefficient_that_is_not_finite_gives_no_root() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for good in [0.0, 1.0, -1.0, f64::MAX, f64::from_bits(1)] {
-                for [a, b, c] in
-                    [[bad, good, good], [good, bad, good], [good, good, bad], [bad, bad, good], [bad; 3]]
-                {
+                for [a, b, c] in [[bad, good, good], [good, bad, good], [good, good, bad], [bad, bad, good], [bad; 3]] {
                     assert_eq!(kernel::<false>(a, b, c), Roots::None);
                     assert_eq!(kernel::<true>(a, b, c), Roots::None);
                 }

@@ -184,11 +184,7 @@ mod tests {
         let found = kernel::<false>(v[0], v[1], v[2], n[0], n[1], n[2]);
         let input = format!("reflect({v:?}, {n:?}) gives {found:?}");
         for other in [kernel::<true>(v[0], v[1], v[2], n[0], n[1], n[2]), reflect(v.into(), n.into())] {
-            assert_eq!(
-                found.to_array().map(f64::to_bits),
-                other.to_array().map(f64::to_bits),
-                "{input}, {other:?}"
-            );
+            assert_eq!(found.to_array().map(f64::to_bits), other.to_array().map(f64::to_bits), "{input}, {other:?}");
         }
         let [v, n] = [v, n].map(|x| x.map(exact));
         let dot = |a: &[_; 3], b: &[_; 3]| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];

@@ -150,19 +150,9 @@ fn without_anything_to_drop_the_answer_is_the_exact_one() {
             let m = class(&mut random);
             let exact = bits(&pseudo_inverse(m));
             for rtol in [0.0, -1.0, f64::NEG_INFINITY, 1e-280] {
-                assert_eq!(
-                    bits(&pseudo_inverse_with_tolerance(m, rtol)),
-                    exact,
-                    "{name} {:?}",
-                    m.to_cols_array()
-                );
+                assert_eq!(bits(&pseudo_inverse_with_tolerance(m, rtol)), exact, "{name} {:?}", m.to_cols_array());
             }
-            assert_eq!(
-                bits(&pseudo_inverse_with_tolerance(m, 1.0)),
-                (0, [0; 9]),
-                "{name} {:?}",
-                m.to_cols_array()
-            );
+            assert_eq!(bits(&pseudo_inverse_with_tolerance(m, 1.0)), (0, [0; 9]), "{name} {:?}", m.to_cols_array());
             assert!(pseudo_inverse_with_tolerance(m, f64::NAN).matrix.is_nan(), "{name}");
         }
     }
@@ -204,12 +194,7 @@ fn powers_of_two_scale_the_answer_exactly() {
             let factor = 2f64.powi(exponent);
             let scaled = pseudo_inverse_with_tolerance(m * factor, rtol);
             let expected = PseudoInverse { matrix: answer.matrix * 2f64.powi(-exponent), rank: answer.rank };
-            if expected
-                .matrix
-                .to_cols_array()
-                .iter()
-                .all(|x| *x == 0.0 || (x.abs() > 1e-290 && x.is_finite()))
-            {
+            if expected.matrix.to_cols_array().iter().all(|x| *x == 0.0 || (x.abs() > 1e-290 && x.is_finite())) {
                 assert_eq!(bits(&scaled), bits(&expected), "{exponent} {rtol:e} {:?}", m.to_cols_array());
             }
         }

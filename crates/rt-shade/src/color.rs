@@ -44,10 +44,7 @@ pub fn to_sample(c: f64, maxval: u16) -> u16 {
     // Two roundings, neither of which passes a half or a whole number: they may lift a sample just below a half onto the
     // next whole number, and do nothing else.
     let scaled = f64::from(maxval) * c + 0.5;
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a cast rounds towards zero: the floor that is wanted"
-    )]
+    #[expect(clippy::cast_possible_truncation, reason = "a cast rounds towards zero: the floor that is wanted")]
     let sample = scaled as u16; // 65535.5 at most
     if f64::from(sample) == scaled { integer_sample(c, maxval) } else { sample }
 }
@@ -148,9 +145,7 @@ mod tests {
     #[test]
     fn samples_are_exact_beside_every_step() {
         let mut rounding_would_err = 0;
-        for maxval in
-            [1, 2, 3, 5, 7, 100, 254, 255, 256, 257, 1000, 1023, 4095, 32767, 32768, 54321, 65534, 65535]
-        {
+        for maxval in [1, 2, 3, 5, 7, 100, 254, 255, 256, 257, 1000, 1023, 4095, 32767, 32768, 54321, 65534, 65535] {
             for doubled in 0..=2 * u32::from(maxval) {
                 // k / maxval and (k + 1/2) / maxval, and the doubles around them
                 let c = f64::from(doubled) / f64::from(2 * u32::from(maxval));
@@ -190,14 +185,9 @@ mod tests {
         assert_eq!(to_sample(0.5, 65535), 32768);
         assert_eq!(to_sample(0.5, 1), 1);
         assert_eq!(to_sample(0.499, 1), 0);
-        for (channel, sample) in [
-            (f64::NAN, 0),
-            (-f64::NAN, 0),
-            (f64::NEG_INFINITY, 0),
-            (-0.0, 0),
-            (f64::INFINITY, 255),
-            (1.0000001, 255),
-        ] {
+        for (channel, sample) in
+            [(f64::NAN, 0), (-f64::NAN, 0), (f64::NEG_INFINITY, 0), (-0.0, 0), (f64::INFINITY, 255), (1.0000001, 255)]
+        {
             assert_eq!(to_sample(channel, 255), sample, "{channel}");
         }
         assert_eq!(clamp(DVec3::new(f64::NAN, -1.0, f64::INFINITY)), DVec3::new(0.0, 0.0, 1.0));

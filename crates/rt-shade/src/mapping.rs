@@ -80,21 +80,12 @@ fn is_moderate(v: f64) -> bool {
 #[inline]
 fn longitude(x: f64, z: f64) -> f64 {
     /// The multiple of a quarter turn to count from, by `z < 0`, `x < 0` and `|x| < |z|`, and which way.
-    const FROM: [(f64, f64); 8] = [
-        (0.5, 0.5),
-        (0.75, -0.5),
-        (1.0, -0.5),
-        (0.75, 0.5),
-        (0.5, -0.5),
-        (0.25, 0.5),
-        (0.0, 0.5),
-        (0.25, -0.5),
-    ];
+    const FROM: [(f64, f64); 8] =
+        [(0.5, 0.5), (0.75, -0.5), (1.0, -0.5), (0.75, 0.5), (0.5, -0.5), (0.25, 0.5), (0.0, 0.5), (0.25, -0.5)];
     let (x_abs, z_abs) = (x.abs(), z.abs());
     let angle = arctangent_over_pi(x_abs.min(z_abs), x_abs.max(z_abs));
-    let octant = 4 * usize::from(z.is_sign_negative())
-        + 2 * usize::from(x.is_sign_negative())
-        + usize::from(x_abs < z_abs);
+    let octant =
+        4 * usize::from(z.is_sign_negative()) + 2 * usize::from(x.is_sign_negative()) + usize::from(x_abs < z_abs);
     let (from, sign) = FROM[octant];
     count_from(from, sign, angle, 0.0)
 }

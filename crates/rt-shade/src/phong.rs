@@ -105,11 +105,8 @@ pub fn phong(
         let incident = unit(towards(light.position, point)); // L
         let cosine = (-incident).dot(normal);
         // NaN goes the exact way too, and is on no side there.
-        let lit = if cosine.abs() > COSINE_ERROR {
-            cosine > 0.0
-        } else {
-            is_above(light.position, point, given_normal)
-        };
+        let lit =
+            if cosine.abs() > COSINE_ERROR { cosine > 0.0 } else { is_above(light.position, point, given_normal) };
         if lit {
             color += material.diffuse * clamp_channel(cosine) * surface * light.color;
             // Most surfaces are matt: no mirrored term, no power.
@@ -324,13 +321,7 @@ mod tests {
         let material = &Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: 1.0 };
         let incident = unit(towards(light, point));
         for (up, above) in [(unit(normal), Ordering::Greater), (-unit(normal), Ordering::Less)] {
-            let seen = SurfacePoint {
-                point,
-                direction: -incident - 0.1 * up,
-                normal,
-                surface: DVec3::ONE,
-                material,
-            };
+            let seen = SurfacePoint { point, direction: -incident - 0.1 * up, normal, surface: DVec3::ONE, material };
             let lights = [PointLight { position: light, color: DVec3::ONE }];
             let color = seen.shaded(&lights).x;
             assert!(
@@ -441,9 +432,8 @@ mod tests {
 
     #[test]
     fn the_nearest_and_the_farthest_light_are_lights() {
-        let shade = |point: DVec3, position| {
-            phong(point, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(position)])
-        };
+        let shade =
+            |point: DVec3, position| phong(point, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(position)]);
         let expected = shade(DVec3::ZERO, DVec3::Z);
         for height in [f64::from_bits(1), 1e-310, 1e-160, 1e160, f64::MAX] {
             assert_eq!(shade(DVec3::ZERO, height * DVec3::Z), expected, "height {height:e}");
@@ -472,8 +462,7 @@ mod tests {
         }
         assert_eq!(shade(DVec3::ZERO, DVec3::NEG_Z, DVec3::ZERO, DVec3::Z), ambient, "zero normal");
         let nan = Material { shininess: f64::NAN, ..SHINY };
-        let color =
-            phong(DVec3::ZERO, DVec3::new(0.1, 0.0, -1.0), DVec3::Z, DVec3::ONE, &nan, &[lamp(DVec3::Z)]);
+        let color = phong(DVec3::ZERO, DVec3::new(0.1, 0.0, -1.0), DVec3::Z, DVec3::ONE, &nan, &[lamp(DVec3::Z)]);
         assert!(color.is_nan(), "a NaN shininess shows: {color}");
     }
 }

@@ -224,7 +224,8 @@ mod tests {
     /// Mostly ordinary numbers, with every kind of other among them.
     fn any_number() -> BoxedStrategy<f64> {
         let special = vec![0.0, -0.0, 1.0, 1e-200, 1e-310, 1e120, f64::MAX, f64::INFINITY, f64::NAN];
-        prop_oneof![8 => ordinary(), 1 => prop::sample::select(special), 1 => any::<u64>().prop_map(f64::from_bits)].boxed()
+        prop_oneof![8 => ordinary(), 1 => prop::sample::select(special), 1 => any::<u64>().prop_map(f64::from_bits)]
+            .boxed()
     }
 
     fn vector(number: BoxedStrategy<f64>) -> impl Strategy<Value = DVec3> {
@@ -335,13 +336,8 @@ mod tests {
     fn what_rounding_leaves_open_is_left_to_phong() {
         let material = &Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
         let lights = [PointLight { position: DVec3::X, color: DVec3::ONE }];
-        let seen = |direction, normal| SurfacePoint {
-            point: DVec3::ZERO,
-            direction,
-            normal,
-            surface: DVec3::ONE,
-            material,
-        };
+        let seen =
+            |direction, normal| SurfacePoint { point: DVec3::ZERO, direction, normal, surface: DVec3::ONE, material };
         let points = [
             seen(DVec3::NEG_Y, DVec3::new(1.0, 1.0, 0.0)), // the light is mirrored to (0, 1, 0): is that zero?
             seen(DVec3::new(-1.0, 1.0, 1e-17), DVec3::ONE), // from which side?

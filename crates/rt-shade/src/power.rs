@@ -106,8 +106,7 @@ fn exp2_of_ordinary_product(s: f64, x: DoubleWord) -> f64 {
     let z = ((hi - j / 32.0) + lo) * std::f64::consts::LN_2;
     let series = z + z
         * z
-        * (1.0 / 2.0
-            + z * (1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z / 5040.0)))));
+        * (1.0 / 2.0 + z * (1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z / 5040.0)))));
     #[expect(clippy::cast_possible_truncation, reason = "the integer j is within 32 * 1100")]
     let j = j as i32;
     let (root, root_lo) = EXP2[(j & 31).unsigned_abs() as usize];
@@ -238,9 +237,7 @@ mod tests {
         for base in [0.0, 1e-320, 0.5, nan] {
             assert_eq!(power(base, 0.0), 1.0, "{base} to the power 0");
         }
-        for (exponent, expected) in
-            [(f64::from_bits(1), 0.0), (2.0, 0.0), (inf, 0.0), (-2.0, inf), (-inf, inf)]
-        {
+        for (exponent, expected) in [(f64::from_bits(1), 0.0), (2.0, 0.0), (inf, 0.0), (-2.0, inf), (-inf, inf)] {
             assert_eq!(power(0.0, exponent), expected, "0 to the power {exponent}");
         }
         for (base, exponent, expected) in [

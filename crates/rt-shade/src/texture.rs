@@ -118,19 +118,13 @@ impl Texture {
         }
     }
 
-    fn bilinear_in<S: Copy + Into<f64>, const CHANNELS: usize>(
-        &self,
-        samples: &[S],
-        u: f64,
-        v: f64,
-    ) -> DVec3 {
+    fn bilinear_in<S: Copy + Into<f64>, const CHANNELS: usize>(&self, samples: &[S], u: f64, v: f64) -> DVec3 {
         // Centers lie at half-integers: texel i covers i..i+1. One whole turn is added to stay positive.
         let x = wrap(u) * self.width as f64 + (self.width as f64 - 0.5);
         let y = (clamp_channel(v) * self.height as f64 - 0.5).clamp(0.0, (self.height - 1) as f64);
         let (left, top) = (whole(x), whole(y));
         let (across, down) = (x - x.floor(), y - y.floor());
-        let (columns, rows) =
-            ([left % self.width, (left + 1) % self.width], [top, (top + 1).min(self.height - 1)]);
+        let (columns, rows) = ([left % self.width, (left + 1) % self.width], [top, (top + 1).min(self.height - 1)]);
         let [upper, lower] = rows.map(|row| {
             let [left, right] = columns.map(|column| self.samples_at::<S, CHANNELS>(samples, column, row));
             left + (right - left) * across
@@ -169,11 +163,7 @@ fn wrap(u: f64) -> f64 {
 }
 
 /// Returns the whole part of a number that is not negative.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a cast saturates: any result is safe"
-)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates: any result is safe")]
 fn whole(x: f64) -> usize {
     x as usize
 }

@@ -175,17 +175,9 @@ mod tests {
 
     #[test]
     fn symbols_and_numbers_are_plain() {
-        for (name, number) in [
-            ("H", 1),
-            ("C", 6),
-            ("c", 6),
-            ("Cl", 17),
-            ("CL", 17),
-            ("8", 8),
-            ("U", 92),
-            ("118", 118),
-            ("D", 1),
-        ] {
+        for (name, number) in
+            [("H", 1), ("C", 6), ("c", 6), ("Cl", 17), ("CL", 17), ("8", 8), ("U", 92), ("118", 118), ("D", 1)]
+        {
             assert_eq!(find(name.as_bytes()), Some(Found::Plain(number)), "{name}");
         }
         for name in ["", "119", "400", "1.5", "99999999999999999999", "-1", "Å", "\0", "'"] {

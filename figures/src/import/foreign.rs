@@ -78,9 +78,7 @@ fn begins_as(start: &[u8]) -> Option<&'static str> {
     let word = first.split_whitespace().next().unwrap_or("");
     match word {
         "ply" => return Some("PLY"),
-        "solid"
-            if second.trim_start().starts_with("facet") || second.trim_start().starts_with("endsolid") =>
-        {
+        "solid" if second.trim_start().starts_with("facet") || second.trim_start().starts_with("endsolid") => {
             return Some("STL");
         }
         "HEADER" | "REMARK" | "CRYST1" | "COMPND" | "HETATM" | "ATOM" | "MODEL" | "TITLE" | "AUTHOR"

@@ -98,8 +98,7 @@ fn number(word: &[u8]) -> Result<f64, String> {
 /// quotient is the only rounding. Source: W. D. Clinger, "How to Read Floating Point Numbers Accurately", 1990.
 #[inline]
 fn short_decimal(word: &[u8]) -> Option<f64> {
-    const POWERS: [f64; 16] =
-        [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+    const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),
         [b'+', digits @ ..] => (false, digits),
@@ -215,10 +214,8 @@ mod tests {
         let text = "v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 1 0\nvn 0 0 1\nusemtl red\nf 1 2 3 4\nf 1 1 2\nf 1 2 3\n";
         std::fs::write(&path, text).unwrap();
         let warnings = mesh(&path).unwrap().warnings;
-        let told: Vec<&str> = warnings
-            .iter()
-            .map(|text| text.split_once(r"bell\u{7}.obj: ").expect("an escaped name").1)
-            .collect();
+        let told: Vec<&str> =
+            warnings.iter().map(|text| text.split_once(r"bell\u{7}.obj: ").expect("an escaped name").1).collect();
         assert_eq!(
             told,
             [
@@ -231,15 +228,11 @@ mod tests {
 
     #[test]
     fn what_is_no_short_decimal_is_left_to_the_library() {
-        for word in
-            ["", "-", "+", ".", "-.", "1e3", "1..2", "1.2.3", "--1", "0x1", "1,5", "nan", "inf", "\u{b2}"]
-        {
+        for word in ["", "-", "+", ".", "-.", "1e3", "1..2", "1.2.3", "--1", "0x1", "1,5", "nan", "inf", "\u{b2}"] {
             assert_eq!(short_decimal(word.as_bytes()), None, "{word}");
             assert_eq!(number(word.as_bytes()).is_ok(), word.parse::<f64>().is_ok(), "{word}");
         }
-        for (word, value) in
-            [("-0", -0.0_f64), ("5.", 5.0), (".5", 0.5), ("999999999999999", 999_999_999_999_999.0)]
-        {
+        for (word, value) in [("-0", -0.0_f64), ("5.", 5.0), (".5", 0.5), ("999999999999999", 999_999_999_999_999.0)] {
             assert_eq!(short_decimal(word.as_bytes()).map(f64::to_bits), Some(value.to_bits()), "{word}");
         }
     }

@@ -167,8 +167,7 @@ pub fn read(mut source: impl BufRead, name: &str) -> Result<Mesh, ObjError> {
         let done = if complete { reader.statement(&bytes, first) } else { Err(Problem::LongLine) };
         done.map_err(|problem| ObjError::Line { path: name.to_owned(), line: first, problem })?;
     }
-    let mesh =
-        reader.finish().map_err(|(line, problem)| ObjError::Line { path: name.to_owned(), line, problem })?;
+    let mesh = reader.finish().map_err(|(line, problem)| ObjError::Line { path: name.to_owned(), line, problem })?;
     match (mesh.triangles.len(), mesh.flat) {
         (0, 0) => Err(ObjError::Empty { path: name.to_owned() }),
         (0, flat) => Err(ObjError::Flat { path: name.to_owned(), flat }),
@@ -238,8 +237,7 @@ impl Reader {
                 self.face(line)?;
             }
             _ => {
-                let known =
-                    |(_, keywords): &(_, &[&str])| keywords.iter().any(|word| word.as_bytes() == keyword);
+                let known = |(_, keywords): &(_, &[&str])| keywords.iter().any(|word| word.as_bytes() == keyword);
                 if let Some(at) = PASSED_OVER.iter().position(known) {
                     self.passed_over |= 1 << at;
                 }
@@ -362,9 +360,7 @@ fn position(word: &[u8], vertices: usize) -> Result<usize, Problem> {
     let number = std::str::from_utf8(number).ok().and_then(|number| number.parse::<i64>().ok());
     let position = match number {
         Some(number @ 1..) => usize::try_from(number - 1).ok(),
-        Some(number @ ..=-1) => {
-            usize::try_from(number.unsigned_abs()).ok().and_then(|n| vertices.checked_sub(n))
-        }
+        Some(number @ ..=-1) => usize::try_from(number.unsigned_abs()).ok().and_then(|n| vertices.checked_sub(n)),
         _ => None,
     };
     position.ok_or_else(|| Problem::Index { found: shown(word), vertices })
@@ -412,10 +408,7 @@ mod tests {
 
     #[test]
     fn negative_numbers_count_back() {
-        assert_eq!(
-            parse(&format!("{SQUARE}f -4 -3 -2\n")).unwrap(),
-            parse(&format!("{SQUARE}f 1 2 3\n")).unwrap()
-        );
+        assert_eq!(parse(&format!("{SQUARE}f -4 -3 -2\n")).unwrap(), parse(&format!("{SQUARE}f 1 2 3\n")).unwrap());
     }
 
     #[test]

@@ -108,11 +108,8 @@ impl Cutter {
         self.queue.clear();
         self.queue.extend((0..n).map(index));
         let convex = |at: &usize| {
-            orientation(
-                self.points[wrapped(at + n - 1, n)],
-                self.points[*at],
-                self.points[wrapped(at + 1, n)],
-            ) == Ordering::Greater
+            orientation(self.points[wrapped(at + n - 1, n)], self.points[*at], self.points[wrapped(at + 1, n)])
+                == Ordering::Greater
         };
         self.posts.plant((0..n).filter(|at| !convex(at)).map(index), &self.points);
 
@@ -177,9 +174,7 @@ impl Cutter {
             let at = self.points[z as usize];
             let sides = [orientation(p, q, at), orientation(q, r, at), orientation(r, p, at)];
             let leads_in = |inside: &dyn Fn(Point) -> bool| {
-                [self.before[z as usize], self.next[z as usize]]
-                    .into_iter()
-                    .any(|z| inside(self.points[z as usize]))
+                [self.before[z as usize], self.next[z as usize]].into_iter().any(|z| inside(self.points[z as usize]))
             };
             let left_of = |from, to, at| orientation(from, to, at) == Ordering::Greater;
             match sides.map(|side| side == Ordering::Equal) {
@@ -238,11 +233,8 @@ impl Posts {
                 return;
             }
             let middle = range.start.midpoint(range.end);
-            (node, range) = if place < middle {
-                (2 * node + 1, range.start..middle)
-            } else {
-                (2 * node + 2, middle..range.end)
-            };
+            (node, range) =
+                if place < middle { (2 * node + 1, range.start..middle) } else { (2 * node + 2, middle..range.end) };
         }
     }
 
@@ -436,9 +428,7 @@ fn largest<T>(values: [T; 3], above: impl Fn(&T, &T) -> bool) -> usize {
 fn are_on_a_line(corners: &[DVec3]) -> bool {
     let start = corners[0];
     let Some(&other) = corners.iter().find(|&&corner| corner != start) else { return true };
-    corners
-        .iter()
-        .all(|&corner| Triangle::new(start, other, corner).is_none_or(|triangle| triangle.is_degenerate()))
+    corners.iter().all(|&corner| Triangle::new(start, other, corner).is_none_or(|triangle| triangle.is_degenerate()))
 }
 
 /// Which way three points turn: `Greater` is counterclockwise, `Equal` on a line. Exact for finite coordinates.
@@ -451,11 +441,7 @@ fn orientation(p: Point, q: Point, r: Point) -> Ordering {
     let error = 4.0 * U * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
     let value = left - right;
     // False for NaN, and where a product overflows.
-    if value.abs() > error && error < f64::INFINITY {
-        value.total_cmp(&0.0)
-    } else {
-        exact_orientation(p, q, r)
-    }
+    if value.abs() > error && error < f64::INFINITY { value.total_cmp(&0.0) } else { exact_orientation(p, q, r) }
 }
 
 #[cold]
@@ -668,16 +654,8 @@ mod tests {
             if triangle.len() > 3 {
                 check_all_ways(&triangle, planes, "triangle with points on its sides");
             }
-            check_all_ways(
-                &with_points_on_sides(&comb(3, random), random),
-                planes,
-                "comb with points on its sides",
-            );
-            check_all_ways(
-                &with_points_on_sides(&star(9, random), random),
-                planes,
-                "star with points on its sides",
-            );
+            check_all_ways(&with_points_on_sides(&comb(3, random), random), planes, "comb with points on its sides");
+            check_all_ways(&with_points_on_sides(&star(9, random), random), planes, "star with points on its sides");
         }
     }
 
@@ -689,8 +667,7 @@ mod tests {
         let (mut simple, mut crossed) = (0, 0);
         while simple < 4000 {
             let n = 4 + random.below(6);
-            let outline: Vec<[f64; 2]> =
-                (0..n).map(|_| [random.below(7) as f64, random.below(7) as f64]).collect();
+            let outline: Vec<[f64; 2]> = (0..n).map(|_| [random.below(7) as f64, random.below(7) as f64]).collect();
             if !is_simple(&outline) {
                 crossed += 1;
                 // Whatever it is, it ends, with a triangle for each corner but two at most.
@@ -716,8 +693,7 @@ mod tests {
             ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).partial_cmp(&0.0).unwrap()
         };
         let within = |p: [f64; 2], q: [f64; 2], at: [f64; 2]| {
-            turn(p, q, at) == Ordering::Equal
-                && (0..2).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]))
+            turn(p, q, at) == Ordering::Equal && (0..2).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]))
         };
         (0..n).all(|i| {
             let (p, q) = side(i);
@@ -749,14 +725,11 @@ mod tests {
             [3.0, 3.0],
         ];
         for start in 0..10 {
-            let corners: Vec<DVec3> = (0..10)
-                .map(|at| outline[(start + at) % 10])
-                .map(|[x, y]| DVec3::new(x, y, 0.25 * x))
-                .collect();
+            let corners: Vec<DVec3> =
+                (0..10).map(|at| outline[(start + at) % 10]).map(|[x, y]| DVec3::new(x, y, 0.25 * x)).collect();
             let mut triangles = Vec::new();
             assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact, "from {start}");
-            let areas: Vec<RBig> =
-                triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 2)).collect();
+            let areas: Vec<RBig> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 2)).collect();
             assert!(areas.iter().all(|area| *area > RBig::ZERO), "from {start}: {triangles:?}");
             assert_eq!(total(areas.into_iter()), RBig::from(2 * (81 - 9)), "from {start}");
         }
@@ -765,13 +738,11 @@ mod tests {
     #[test]
     fn corners_listed_twice_make_no_triangle() {
         let corner = |x: f64, y: f64| DVec3::new(x, 0.0, y);
-        let corners =
-            [(0.0, 0.0), (0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (5.0, 5.0), (7.0, 5.0), (5.0, 5.0), (0.0, 5.0)];
+        let corners = [(0.0, 0.0), (0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (5.0, 5.0), (7.0, 5.0), (5.0, 5.0), (0.0, 5.0)];
         let corners = corners.map(|(x, y)| corner(x, y));
         let mut triangles = Vec::new();
         assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact);
-        let areas: Vec<RBig> =
-            triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 1)).collect();
+        let areas: Vec<RBig> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 1)).collect();
         assert_eq!(areas.len(), 2);
         assert_eq!(total(areas.into_iter()), RBig::from(-50));
     }
@@ -798,10 +769,7 @@ mod tests {
         for (outline, what) in [
             (comb(25_000, random), "comb"),
             (spiral(50_000), "spiral"),
-            (
-                (0..100_000).map(|k| [f64::from(k.min(50_000)), f64::from((k - 50_000).max(0))]).collect(),
-                "corner",
-            ),
+            ((0..100_000).map(|k| [f64::from(k.min(50_000)), f64::from((k - 50_000).max(0))]).collect(), "corner"),
         ] {
             let n = outline.len();
             let corners = plane(outline);

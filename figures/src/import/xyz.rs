@@ -101,9 +101,7 @@ pub enum Problem {
     #[error("color must be from 0 to 1, found {0}")]
     Color(f64),
     /// Neither a symbol nor an atomic number.
-    #[error(
-        "unknown element {0:?}; expected a symbol such as C, a label such as C1 or OW, or an atomic number"
-    )]
+    #[error("unknown element {0:?}; expected a symbol such as C, a label such as C1 or OW, or an atomic number")]
     Element(String),
     /// Nothing says how large the spheres are.
     #[error("neither an element nor a radius column; give the spheres a radius")]
@@ -465,8 +463,7 @@ struct Piece {
 impl Layout {
     /// Reads the comment line.
     fn of(comment: &str, options: Options) -> Result<Self, Problem> {
-        let mut layout =
-            Self { options, position: 1, element: Some(0), radius: None, color: None, columns: 4 };
+        let mut layout = Self { options, position: 1, element: Some(0), radius: None, color: None, columns: 4 };
         let Some(properties) = value(comment, "properties") else { return Ok(layout) };
         let refuse = || Problem::Properties(shown(properties.as_bytes()));
         let fields: Vec<&str> = properties.split(':').collect();
@@ -530,14 +527,12 @@ impl Layout {
             return Err(Problem::NotFinite { name: "position", found: shown(&words.join(&b' ')) });
         }
         let color = self.color.map(three).transpose()?;
-        if let Some(channel) =
-            color.and_then(|color| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c)))
-        {
+        if let Some(channel) = color.and_then(|color| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c))) {
             return Err(Problem::Color(channel));
         }
         // An element has to be known only where something depends on it.
-        let needed = (self.options.colored && color.is_none())
-            || (self.radius.is_none() && self.options.radius.is_none());
+        let needed =
+            (self.options.colored && color.is_none()) || (self.radius.is_none() && self.options.radius.is_none());
         let element = match self.element.filter(|_| needed) {
             Some(at) => match elements::find(columns[at]) {
                 Some(Found::Plain(element)) => Some(element),
@@ -575,8 +570,7 @@ fn value<'a>(comment: &'a str, key: &str) -> Option<&'a str> {
     let starts = lower.match_indices(key).map(|(at, _)| at);
     // A key stands at the start of a word, and its value follows at once.
     let at = starts.into_iter().find(|&at| {
-        (at == 0 || lower.as_bytes()[at - 1].is_ascii_whitespace())
-            && lower[at + key.len()..].starts_with('=')
+        (at == 0 || lower.as_bytes()[at - 1].is_ascii_whitespace()) && lower[at + key.len()..].starts_with('=')
     })?;
     let value = &comment[at + key.len() + 1..];
     match value.strip_prefix('"') {
@@ -618,8 +612,7 @@ mod tests {
 
     #[test]
     fn an_extended_file_has_its_own_columns() {
-        let comment =
-            "Lattice=\"1 0 0\" Properties=species:S:1:vel:R:2:pos:R:3:radius:R:1:color:R:3 pbc=\"T T T\"";
+        let comment = "Lattice=\"1 0 0\" Properties=species:S:1:vel:R:2:pos:R:3:radius:R:1:color:R:3 pbc=\"T T T\"";
         let text = format!("2\n{comment}\nXx 7 7 1 2 3 0.5 1 0.5 0\nC 8 8 4 5 6 0 1 0.5 0\n");
         let found = parse(&text, Options { scale: 2.0, ..Options::default() }).unwrap();
         assert_eq!(found.spheres, [sphere(2.0, 4.0, 6.0, 1.0), sphere(8.0, 10.0, 12.0, 0.0)]);
@@ -691,8 +684,7 @@ mod tests {
         let found = parse(text, Options::default()).unwrap();
         let radii: Vec<f64> = found.spheres.iter().map(Sphere::radius).collect();
         assert_eq!(radii, [1.5, 1.2, 1.77, 1.2, 0.5, 1.2]);
-        let note =
-            r#"names are read by their letters: "OW" as O, "HW1" as H, "C1" as C, "X" as a dummy atom"#;
+        let note = r#"names are read by their letters: "OW" as O, "HW1" as H, "C1" as C, "X" as a dummy atom"#;
         assert_eq!(found.notes, [note]);
         // A long list is cut, at the same place however the file is cut into pieces.
         let mut text = "100000\n\n".to_owned();
@@ -719,10 +711,7 @@ mod tests {
         let frame = "1\n\nC 1 2 3\n";
         assert!(notes(&format!("{frame}\n \n")).is_empty());
         assert_eq!(notes(&frame.repeat(3)), ["only the first frame is drawn; another one follows in line 4"]);
-        assert_eq!(
-            notes(&format!("{frame}\nC 1 2 3")),
-            ["what follows the last atom is passed over, from line 5 on"]
-        );
+        assert_eq!(notes(&format!("{frame}\nC 1 2 3")), ["what follows the last atom is passed over, from line 5 on"]);
         let long = format!("{frame}{}", "C".repeat(BUFFER + 1));
         assert_eq!(notes(&long), ["what follows the last atom is passed over, from line 4 on"]);
     }
@@ -731,10 +720,7 @@ mod tests {
     fn a_count_beyond_the_memory_is_an_error() {
         // The length of a file with holes can be anything.
         let error = read(&b"1000000000000000000\n\nC 0 0 0\n"[..], u64::MAX, "atoms.xyz", Options::default());
-        assert_eq!(
-            error.unwrap_err().to_string(),
-            "atoms.xyz:2: not enough memory for 1000000000000000000 atoms"
-        );
+        assert_eq!(error.unwrap_err().to_string(), "atoms.xyz:2: not enough memory for 1000000000000000000 atoms");
     }
 
     #[test]

@@ -45,8 +45,7 @@ pub(super) fn cut(text: &str, group: usize) -> Option<Cut> {
             }
             section = Some((at, element(&text[at..], section.and_then(|(_, element)| element))));
         }
-        let key =
-            between && matches!(kind, TokenKind::Atom | TokenKind::BasicString | TokenKind::LiteralString);
+        let key = between && matches!(kind, TokenKind::Atom | TokenKind::BasicString | TokenKind::LiteralString);
         if key && section.is_none() && NAMES.contains(&text[at..end].trim_matches(['"', '\''])) {
             return None;
         }

@@ -25,9 +25,7 @@ pub(in super::super) fn enclosing() -> Vec<Method<{ 4 * COUNT }, 4>> {
 }
 
 fn shapes(case: &[f64; 4 * COUNT]) -> [Sphere; COUNT] {
-    std::array::from_fn(|i| {
-        Sphere::new(dvec3(case, 4 * i), case[4 * i + 3]).expect("cases are valid spheres")
-    })
+    std::array::from_fn(|i| Sphere::new(dvec3(case, 4 * i), case[4 * i + 3]).expect("cases are valid spheres"))
 }
 
 type Ball = (DVec3, f64);

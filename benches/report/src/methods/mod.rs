@@ -70,11 +70,7 @@ pub(super) struct Method<const M: usize, const N: usize> {
 }
 
 impl<const M: usize, const N: usize> Method<M, N> {
-    fn new(
-        name: &'static str,
-        source: &'static str,
-        method: impl Fn(&[f64; M]) -> Answer<N> + Copy + 'static,
-    ) -> Self {
+    fn new(name: &'static str, source: &'static str, method: impl Fn(&[f64; M]) -> Answer<N> + Copy + 'static) -> Self {
         let prepare = prepare(move |cases| {
             Box::new(move |answers| {
                 for (case, answer) in cases.iter().zip(answers) {

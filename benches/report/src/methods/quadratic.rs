@@ -12,9 +12,7 @@ pub(in super::super) fn quadratic() -> Vec<Method<3, 2>> {
         Method::new("textbook f32", "(-b ± √(b² - 4ac)) / 2a", textbook::<f32>),
         Method::new("textbook", "(-b ± √(b² - 4ac)) / 2a", textbook::<f64>),
         Method::new("q-form", "Press et al., Numerical Recipes, section 5.6", |case| stable(case, plain)),
-        Method::new("q-form, Kahan's D", "Kahan 2004; Jeannerod, Louvet, Muller 2013", |case| {
-            stable(case, fused)
-        }),
+        Method::new("q-form, Kahan's D", "Kahan 2004; Jeannerod, Louvet, Muller 2013", |case| stable(case, fused)),
         Method::ours("ours", |&[a, b, c]| answer(solve_quadratic(a, b, c))),
     ]
 }

@@ -34,11 +34,7 @@ pub(in super::super) trait Real:
 macro_rules! real {
     ($float:ident, $atan2:ident, $asin:ident) => {
         impl Real for $float {
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::unnecessary_cast,
-                reason = "narrowing is the point"
-            )]
+            #[allow(clippy::cast_possible_truncation, clippy::unnecessary_cast, reason = "narrowing is the point")]
             fn of(x: f64) -> Self {
                 x as $float
             }

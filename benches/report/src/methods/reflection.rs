@@ -13,10 +13,7 @@ pub(in super::super) fn reflection() -> Vec<Method<6, 3>> {
         Method::new("unit normal", "v - 2 (v·n) n", unit::<f64>),
         Method::new("any normal f32", "v - 2 (v·n) / (n·n) n", any::<f32>),
         Method::new("any normal", "v - 2 (v·n) / (n·n) n", any::<f64>),
-        Method::ours("ours", |case| Answer {
-            verdict: 0,
-            values: reflect(dvec3(case, 0), dvec3(case, 3)).to_array(),
-        }),
+        Method::ours("ours", |case| Answer { verdict: 0, values: reflect(dvec3(case, 0), dvec3(case, 3)).to_array() }),
     ]
 }
 

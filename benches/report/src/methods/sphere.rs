@@ -64,11 +64,7 @@ fn textbook<T: Real>(case: &[f64; 10]) -> Answer<1> {
 }
 
 /// The textbook's two roots, if it finds any; `offset` leads from the center to the origin of the ray.
-pub(in super::super) fn textbook_roots<T: Real>(
-    direction: Vector<T>,
-    offset: Vector<T>,
-    radius: T,
-) -> Option<[T; 2]> {
+pub(in super::super) fn textbook_roots<T: Real>(direction: Vector<T>, offset: Vector<T>, radius: T) -> Option<[T; 2]> {
     let (a, b) = (dot(direction, direction), dot(direction, offset));
     let discriminant = b * b - a * (dot(offset, offset) - radius * radius);
     if discriminant < T::of(0.0) {

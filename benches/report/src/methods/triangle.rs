@@ -11,9 +11,7 @@ use super::{Answer, Method};
 /// Returns the methods that intersect a ray with a triangle.
 pub(in super::super) fn triangle() -> Vec<Method<15, 1>> {
     vec![
-        Method::new("Möller-Trumbore f32", "Möller, Trumbore 1997", |case| {
-            moller_trumbore::<f32>(case, 0.0)
-        }),
+        Method::new("Möller-Trumbore f32", "Möller, Trumbore 1997", |case| moller_trumbore::<f32>(case, 0.0)),
         Method::new("Möller-Trumbore", "Möller, Trumbore 1997", |case| moller_trumbore::<f64>(case, 0.0)),
         Method::new("Möller-Trumbore, ε", "Möller, Trumbore 1997, with the tolerance 1e-8", |case| {
             moller_trumbore::<f64>(case, 1e-8)

@@ -7,8 +7,7 @@ use rt_geom::{Ray, Sphere};
 
 use super::samples;
 use crate::reference::{
-    Big, Lamp, coordinates, cross, crossing, exact, long, nearest_root, point_at, rounded, shade, sub,
-    weights,
+    Big, Lamp, coordinates, cross, crossing, exact, long, nearest_root, point_at, rounded, shade, sub, weights,
 };
 use figures::camera::{Size, View};
 use figures::scene::{Filter, Paint, Scene};
@@ -16,11 +15,8 @@ use figures::scene::{Filter, Paint, Scene};
 /// Returns the samples of a picture.
 pub(super) fn picture(scene: &Scene, view: &View) -> Vec<u8> {
     let Size { width, height, .. } = view.size();
-    let lamps: Vec<Lamp> = scene
-        .lights
-        .iter()
-        .map(|light| Lamp { position: wide(light.position), color: wide(light.color) })
-        .collect();
+    let lamps: Vec<Lamp> =
+        scene.lights.iter().map(|light| Lamp { position: wide(light.position), color: wide(light.color) }).collect();
     let pixel = |i: u32| samples(color(scene, &lamps, &view.ray(i % width, i / width)));
     (0..width * height).into_par_iter().flat_map_iter(pixel).collect()
 }

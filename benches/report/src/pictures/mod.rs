@@ -104,9 +104,7 @@ pub(super) fn pictures(effort: Effort) -> Vec<Pictured> {
 fn crowd() -> Scene {
     let mut scene = Scene::empty();
     for (look, ball) in (0..).zip(sphereflake(3)) {
-        scene
-            .spheres
-            .push(Sphere::new(ball.center, ball.radius).expect("a sphereflake's radii are positive"));
+        scene.spheres.push(Sphere::new(ball.center, ball.radius).expect("a sphereflake's radii are positive"));
         scene.sphere_looks.push(look);
         scene.looks.push(Look::colored(ball.color));
     }
@@ -187,8 +185,7 @@ fn batch(renderer: &Renderer, view: &View) -> Samples {
 
 fn as_png(samples: Samples, Size { width, height, .. }: Size) -> Vec<u8> {
     let samples = samples.into_iter().map(u16::from).collect();
-    let pixmap =
-        Pixmap::new(width as usize, height as usize, 255, samples).expect("as many samples as pixels");
+    let pixmap = Pixmap::new(width as usize, height as usize, 255, samples).expect("as many samples as pixels");
     let mut bytes = Vec::new();
     png::write(&pixmap, &mut bytes).expect("a vector takes every byte");
     bytes

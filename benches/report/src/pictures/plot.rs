@@ -59,8 +59,7 @@ const COLUMN: f64 = 46.0;
 pub(in super::super) fn plot(pictures: &[Pictured]) -> String {
     let groups = [Group::Figures, Group::Crowd, Group::Hard].map(|group| (group, totals(pictures, group)));
     let speeds = groups.iter().flat_map(|(_, totals)| totals).map(Total::speed);
-    let (low, high) =
-        speeds.fold((f64::MAX, f64::MIN), |(low, high), speed| (low.min(speed), high.max(speed)));
+    let (low, high) = speeds.fold((f64::MAX, f64::MIN), |(low, high), speed| (low.min(speed), high.max(speed)));
     let (low, high) = (low.log10() - 0.15, high.log10() + 0.15);
     let y = |speed: f64| TOP + (BOTTOM - TOP) * (high - speed.log10()) / (high - low);
 
@@ -70,8 +69,7 @@ pub(in super::super) fn plot(pictures: &[Pictured]) -> String {
     for tick in ticks.filter(|tick| (low..high).contains(&tick.log10())) {
         let (y, end) = (y(tick), LEFT + 3.0 * PANEL + 2.0 * GAP);
         let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{end}" y2="{y:.1}"/>"#);
-        let _ =
-            writeln!(svg, r#"<text x="{}" y="{:.1}" text-anchor="end">{tick}</text>"#, LEFT - 8.0, y + 4.0);
+        let _ = writeln!(svg, r#"<text x="{}" y="{:.1}" text-anchor="end">{tick}</text>"#, LEFT - 8.0, y + 4.0);
     }
     for (i, (group, totals)) in groups.iter().enumerate() {
         let left = LEFT + i as f64 * (PANEL + GAP);
@@ -122,8 +120,7 @@ fn panel(svg: &mut String, left: f64, title: String, totals: &[Total], y: &dyn F
     for (decade, text) in [(0, "1"), (2, "100"), (4, "10⁴"), (6, "10⁶")] {
         let at = x(10f64.powi(decade));
         let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{TOP}" x2="{at:.1}" y2="{BOTTOM}"/>"#);
-        let _ =
-            writeln!(svg, r#"<text x="{at:.1}" y="{}" text-anchor="middle">{text}</text>"#, BOTTOM + 17.0);
+        let _ = writeln!(svg, r#"<text x="{at:.1}" y="{}" text-anchor="middle">{text}</text>"#, BOTTOM + 17.0);
     }
     let zero = x(0.0);
     let bound = totals.first().map_or(f64::NAN, |total| 3e6 / total.pixels as f64);

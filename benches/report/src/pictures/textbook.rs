@@ -100,21 +100,12 @@ impl<'a, T: Real> Painter<'a, T> {
         best
     }
 
-    fn lit(
-        &self,
-        point: Vector<T>,
-        direction: Vector<T>,
-        normal: Vector<T>,
-        surface: Vector<T>,
-        look: &Look,
-    ) -> DVec3 {
+    fn lit(&self, point: Vector<T>, direction: Vector<T>, normal: Vector<T>, surface: Vector<T>, look: &Look) -> DVec3 {
         let material = &look.material;
         let mut color = scaled(surface, T::of(material.ambient));
         for lamp in &self.scene.lights {
-            let (diffuse, specular) =
-                terms(point, direction, normal, narrow(lamp.position), material.shininess);
-            let (diffuse, specular) =
-                (T::of(material.diffuse) * diffuse, T::of(material.specular) * specular);
+            let (diffuse, specular) = terms(point, direction, normal, narrow(lamp.position), material.shininess);
+            let (diffuse, specular) = (T::of(material.diffuse) * diffuse, T::of(material.specular) * specular);
             let light: Vector<T> = narrow(lamp.color);
             color = [0, 1, 2].map(|i| color[i] + (diffuse * surface[i] + specular) * light[i]);
         }

@@ -42,8 +42,7 @@ fn tangent_around(balls: &[&([Big; 3], Big)]) -> Vec<([Big; 3], Big)> {
     let two = long(&exact(2.0));
     let p: Vec<Big> = edges.iter().zip(&balls[1..]).map(|(e, (_, s))| dot(e, e) + r * r - s * s).collect();
     let q: Vec<Big> = balls[1..].iter().map(|(_, s)| &two * (s - r)).collect();
-    let gram: Vec<Vec<Big>> =
-        edges.iter().map(|e| edges.iter().map(|f| &two * dot(e, f)).collect()).collect();
+    let gram: Vec<Vec<Big>> = edges.iter().map(|e| edges.iter().map(|f| &two * dot(e, f)).collect()).collect();
     let (Some(p), Some(q)) = (solve(&gram, &p), solve(&gram, &q)) else {
         return Vec::new();
     };
@@ -114,8 +113,7 @@ mod tests {
         let case: [f64; 4 * COUNT] = corners.try_into().expect("eight corners");
         let found = enclosing(&case);
         assert_eq!((found.verdict, found.values[3]), (1, 0.75f64.sqrt()));
-        let holds =
-            |radius| judge_enclosing(&case, Answer { verdict: 1, values: [0.5, 0.5, 0.5, radius] }).verdict;
+        let holds = |radius| judge_enclosing(&case, Answer { verdict: 1, values: [0.5, 0.5, 0.5, radius] }).verdict;
         assert_eq!((holds(0.866_025_403), holds(0.866_025_404)), (0, 1));
     }
 }

@@ -207,8 +207,7 @@ fn exact_pseudo_inverse(columns: &Matrix) -> (u8, Matrix, Big) {
     // Frobenius norms, squared, of the matrix and of its minors: the first two symmetric functions of σ².
     let squares = |rows: &Matrix| rows.iter().map(|row| dot(row, row)).fold(Big::ZERO, |sum, x| sum + x);
     let (s1, s2) = (squares(columns), squares(&minors));
-    let matrix =
-        |entry: &dyn Fn(usize, usize) -> Big| [0, 1, 2].map(|column| [0, 1, 2].map(|row| entry(row, column)));
+    let matrix = |entry: &dyn Fn(usize, usize) -> Big| [0, 1, 2].map(|column| [0, 1, 2].map(|row| entry(row, column)));
     if !is_zero(&determinant) {
         (3, matrix(&|row, column| minors[row][column].clone()), determinant)
     } else if !is_zero(&s2) {
@@ -290,11 +289,7 @@ mod tests {
         assert_eq!(sphere(&[1.0, 0.0, 5.0, 0.0, 0.0, -2.0, 0.0, 0.0, 0.0, 1.0]).values, [2.5], "tangent");
         let corner = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
         assert_eq!(triangle(&corner).values, [1.0], "through a vertex");
-        assert_eq!(
-            inside(&[0.5, 0.5, 7.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]).verdict,
-            1,
-            "on an edge"
-        );
+        assert_eq!(inside(&[0.5, 0.5, 7.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]).verdict, 1, "on an edge");
         let inverse = pseudo_inverse(&[2.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0]);
         assert_eq!((inverse.verdict, inverse.values[0], inverse.values[4]), (2, 0.5, 0.25));
         assert_eq!(reflection(&[1.0, -1.0, 0.0, 0.0, 5.0, 0.0]).values, [1.0, 1.0, 0.0]);

@@ -148,10 +148,7 @@ pub(super) fn fly<S: Simd>(
                 let (bounds, place) = if kind == SPHERES {
                     (ask!(simd, tree.spheres[place], candidate(&slot.ray, limit)), place)
                 } else {
-                    (
-                        ask!(simd, tree.triangles[place], candidate(&slot.ray, limit)),
-                        tree.spheres.len() + place,
-                    )
+                    (ask!(simd, tree.triangles[place], candidate(&slot.ray, limit)), tree.spheres.len() + place)
                 };
                 if let Some(bounds) = bounds
                     && slot.best.offer(bounds, place, tree, &slot.ray)
@@ -181,8 +178,7 @@ pub(super) fn fly<S: Simd>(
             let met = ((keys & !LANE) | lanes).compress(mask);
             let count = mask.to_bitmask().count_ones() as usize;
             let top = slot.base + slot.height;
-            let low: &mut [u32; WIDTH] =
-                (&mut stacks.keys[top..top + WIDTH]).try_into().expect("a slice of sixteen");
+            let low: &mut [u32; WIDTH] = (&mut stacks.keys[top..top + WIDTH]).try_into().expect("a slice of sixteen");
             if count <= 8 {
                 let (first, _) = met.split();
                 descending(simd, first).store_slice(&mut low[..8]);

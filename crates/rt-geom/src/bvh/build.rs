@@ -37,10 +37,7 @@ pub(super) struct Item {
 impl Item {
     pub(super) fn new(low: [f32; 3], high: [f32; 3], index: u32) -> Self {
         let [x, y, z] = low;
-        Self {
-            low: Vec4::new(x, y, z, f32::from_bits(index)),
-            high: Vec4::new(high[0], high[1], high[2], 0.0),
-        }
+        Self { low: Vec4::new(x, y, z, f32::from_bits(index)), high: Vec4::new(high[0], high[1], high[2], 0.0) }
     }
 
     pub(super) fn index(&self) -> u32 {
@@ -160,19 +157,9 @@ fn bounds_of(items: &[Item]) -> Extent {
 }
 
 /// `distinct` tells that no two items are known to be equal.
-fn grow(
-    items: &mut [Item],
-    branches: &mut [Branch],
-    extent: &Extent,
-    depth: u32,
-    distinct: bool,
-    order: Order,
-) {
-    branches[0] = Branch {
-        low: extent.items.low.truncate().to_array(),
-        high: extent.items.high.truncate().to_array(),
-        first: 0,
-    };
+fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32, distinct: bool, order: Order) {
+    branches[0] =
+        Branch { low: extent.items.low.truncate().to_array(), high: extent.items.high.truncate().to_array(), first: 0 };
     let spread = extent.middles.high - extent.middles.low;
     let coincide = items.len() > 1 && spread.truncate().max_element() <= COINCIDENT;
     let kept = if coincide && !distinct { part_twins(items, order) } else { items.len() };
@@ -471,12 +458,7 @@ pub(super) type Spans = [Range<usize>; WIDTH];
 ///
 /// Of all ways to do so it takes the one with the least sum of the nodes' surfaces, which is the number of nodes that
 /// a random ray is expected to visit.
-pub(super) fn collapse(
-    branches: &[Branch],
-    kind: Kind,
-    nodes: &mut Vec<Node>,
-    spans: &mut Vec<Spans>,
-) -> Part {
+pub(super) fn collapse(branches: &[Branch], kind: Kind, nodes: &mut Vec<Node>, spans: &mut Vec<Spans>) -> Part {
     let mut collapse = Collapse { branches, costs: costs(branches), kind, nodes, spans };
     collapse.part(0, 0..branches.len().div_ceil(2))
 }
@@ -524,8 +506,7 @@ impl Collapse<'_> {
         self.share(at, leaves, WIDTH - 1, &mut parts);
         let index = self.nodes.len();
         self.nodes.push(Node::EMPTY);
-        self.spans
-            .push(std::array::from_fn(|lane| parts.get(lane).map_or(0..0, |(_, leaves)| leaves.clone())));
+        self.spans.push(std::array::from_fn(|lane| parts.get(lane).map_or(0..0, |(_, leaves)| leaves.clone())));
         let mut stack = 0;
         for (lane, (at, leaves)) in parts.iter().enumerate() {
             let part = self.part(*at, leaves.clone());
@@ -574,15 +555,13 @@ pub(super) fn minimal_spheres(
     for (at, spans) in spans.iter().enumerate().rev() {
         let start = list.len();
         for (child, blocks) in nodes[first + at].children().iter().zip(spans) {
-            let children =
-                if child.kind() == Kind::Inner { lists[child.index() - first].clone() } else { 0..0 };
+            let children = if child.kind() == Kind::Inner { lists[child.index() - first].clone() } else { 0..0 };
             let leaves = blocks.start * per_block..spheres.len().min(blocks.end * per_block);
             list.push(nodes::Node { leaves, children });
         }
         lists[at] = start..list.len();
     }
     let found = enclosing_nodes(spheres, &list);
-    let of =
-        |list: Range<usize>| std::array::from_fn(|lane| found[list.clone()].get(lane).copied().flatten());
+    let of = |list: Range<usize>| std::array::from_fn(|lane| found[list.clone()].get(lane).copied().flatten());
     lists.into_iter().map(of).collect()
 }

@@ -192,11 +192,7 @@ fn across(w: Vec3) -> [Vec3; 3] {
     let sign = 1.0_f32.copysign(w.z);
     let a = -1.0 / (sign + w.z);
     let b = w.x * w.y * a;
-    [
-        Vec3::new(1.0 + sign * w.x * w.x * a, sign * b, -sign * w.x),
-        Vec3::new(b, sign + w.y * w.y * a, -w.y),
-        w,
-    ]
+    [Vec3::new(1.0 + sign * w.x * w.x * a, sign * b, -sign * w.x), Vec3::new(b, sign + w.y * w.y * a, -w.y), w]
 }
 
 /// The boxes met, as bits; and a key for each: in the order of entry, meaningless where not met.
@@ -242,12 +238,7 @@ pub(super) fn meet_balls<S: Simd>(simd: S, line: &Line, balls: &Balls) -> u32 {
 
 /// How far along an axis the points are.
 #[inline(always)]
-fn along<S: Simd>(
-    simd: S,
-    (x, y, z): (f32x16<S>, f32x16<S>, f32x16<S>),
-    axis: Vec3,
-    offset: f32,
-) -> f32x16<S> {
+fn along<S: Simd>(simd: S, (x, y, z): (f32x16<S>, f32x16<S>, f32x16<S>), axis: Vec3, offset: f32) -> f32x16<S> {
     let z = z.mul_add(f32x16::splat(simd, axis.z), f32x16::splat(simd, -offset));
     let yz = y.mul_add(f32x16::splat(simd, axis.y), z);
     x.mul_add(f32x16::splat(simd, axis.x), yz)

@@ -110,8 +110,7 @@ pub(super) enum Kind {
 impl Child {
     const SHIFT: u32 = 30;
     pub(super) fn new(kind: Kind, index: usize) -> Self {
-        let index =
-            u32::try_from(index).ok().filter(|&i| i < 1 << Self::SHIFT).expect("fewer than 2^34 primitives");
+        let index = u32::try_from(index).ok().filter(|&i| i < 1 << Self::SHIFT).expect("fewer than 2^34 primitives");
         Self((kind as u32) << Self::SHIFT | index)
     }
 
@@ -204,10 +203,7 @@ impl Frame {
         let center = self.point(sphere.center());
         let narrow = center.as_vec3();
         let moved = (center - narrow.as_dvec3()).length();
-        Ball {
-            center: narrow.to_array(),
-            radius: up(self.length(sphere.radius()) + moved + 2.0 * COORDINATE_ERROR),
-        }
+        Ball { center: narrow.to_array(), radius: up(self.length(sphere.radius()) + moved + 2.0 * COORDINATE_ERROR) }
     }
 }
 

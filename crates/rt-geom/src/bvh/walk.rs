@@ -84,8 +84,8 @@ impl Best {
     /// Takes the candidate if it is closer; returns whether it did.
     #[inline(always)]
     pub(super) fn offer(&mut self, bounds: Candidate, place: usize, tree: &Bvh, ray: &PreparedRay) -> bool {
-        let closer = bounds.high < self.bounds.low
-            || (bounds.low <= self.bounds.high && self.settle(bounds, place, tree, ray));
+        let closer =
+            bounds.high < self.bounds.low || (bounds.low <= self.bounds.high && self.settle(bounds, place, tree, ray));
         if closer && bounds.high < self.bounds.low {
             *self = Self { bounds, place };
             prefetch_lines(tree.index.as_ptr().wrapping_add(place), 1);
@@ -349,11 +349,7 @@ impl Bvh {
     /// The correctly rounded parameter of a candidate, which its bounds tell if they are equal.
     #[inline(always)]
     fn rounded_within(&self, Candidate { low, high }: Candidate, place: usize, ray: &PreparedRay) -> f64 {
-        if low.to_bits() == high.to_bits() {
-            low
-        } else {
-            self.rounded(place, ray).expect("a candidate is a hit")
-        }
+        if low.to_bits() == high.to_bits() { low } else { self.rounded(place, ray).expect("a candidate is a hit") }
     }
 
     /// The correctly rounded parameter of the primitive's closest hit.

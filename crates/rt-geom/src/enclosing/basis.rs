@@ -135,12 +135,7 @@ impl<T: Real> Tangent<T> {
         let (p2, s2, h2) = relative::<T>(&spheres[self.index[2]], c0, r0);
         let n = cross(p1, p2);
         if self.len == 3 {
-            return self.finish(
-                dot(n, n),
-                [cross(p2, n), cross(n, p1), zero],
-                [h1, h2, T::ZERO],
-                [s1, s2, T::ZERO],
-            );
+            return self.finish(dot(n, n), [cross(p2, n), cross(n, p1), zero], [h1, h2, T::ZERO], [s1, s2, T::ZERO]);
         }
         let (p3, s3, h3) = relative::<T>(&spheres[self.index[3]], c0, r0);
         self.finish(dot(n, p3), [cross(p2, p3), cross(p3, p1), n], [h1, h2, h3], [s1, s2, s3])

@@ -175,8 +175,7 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
         let to = sphere.center();
         let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_diff(to[axis], origin[axis]));
         lost = lost.max(x.1.abs() + y.1.abs() + z.1.abs());
-        Sphere::new(DVec3::new(x.0, y.0, z.0), sphere.radius())
-            .expect("distances in an ordinary set are finite")
+        Sphere::new(DVec3::new(x.0, y.0, z.0), sphere.radius()).expect("distances in an ordinary set are finite")
     });
     // (The center of the copy is less than its radius from the origin: it is not far, and no rounding is unclear.)
     let (bracket, bound) = certify(simd, &tangent.renumbered(), &moved);
@@ -302,13 +301,7 @@ impl Bracket {
     }
 
     #[inline(always)]
-    fn around_here<S: Simd>(
-        simd: S,
-        center: DVec3,
-        rest: DVec3,
-        spheres: [&Sphere; 4],
-        count: usize,
-    ) -> Self {
+    fn around_here<S: Simd>(simd: S, center: DVec3, rest: DVec3, spheres: [&Sphere; 4], count: usize) -> Self {
         let nearest = f64x4::simd_from(simd, [center.x, center.y, center.z, 0.0]);
         let rest = f64x4::simd_from(simd, [rest.x, rest.y, rest.z, 0.0]);
         let other = nearest + (nearest.abs() * SPACING).copysign(rest);
@@ -399,17 +392,11 @@ pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> b
 }
 
 /// The same in fixed-point numbers, if one window holds all: coordinates of `N` limbs, squares of `S = 2 N`.
-fn contains_fixed<const N: usize, const S: usize>(
-    center: DVec3,
-    radius: f64,
-    sphere: &Sphere,
-) -> Option<bool> {
+fn contains_fixed<const N: usize, const S: usize>(center: DVec3, radius: f64, sphere: &Sphere) -> Option<bool> {
     let c = sphere.center();
-    let window =
-        Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, radius, sphere.radius()])?;
+    let window = Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, radius, sphere.radius()])?;
     let [from, to] = [center, c].map(|point| point.to_array().map(|x| window.fixed(x)));
-    let (offset, room) =
-        (Fixed::difference(&from, &to), window.fixed(radius) - window.fixed(sphere.radius()));
+    let (offset, room) = (Fixed::difference(&from, &to), window.fixed(radius) - window.fixed(sphere.radius()));
     let excess = Fixed::<S>::dot(&offset, &offset) - Fixed::product(&room, &room);
     Some(room.sign().is_ge() && excess.sign().is_le())
 }
@@ -435,11 +422,7 @@ pub(super) fn smallest_radius(center: DVec3, sphere: &Sphere) -> f64 {
     let nearest = reach_fixed::<1, 2>(center, sphere)
         .or_else(|| reach_fixed::<2, 4>(center, sphere))
         .unwrap_or_else(|| reach_of_any_size(center, sphere));
-    if nearest.is_infinite() || contains_exactly(center, nearest, sphere) {
-        nearest
-    } else {
-        nearest.next_up()
-    }
+    if nearest.is_infinite() || contains_exactly(center, nearest, sphere) { nearest } else { nearest.next_up() }
 }
 
 #[cold]

@@ -19,11 +19,7 @@ pub(super) struct Lanes<S: Simd, const VECTORS: usize> {
 impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
     /// Takes at least one sphere, and at most eight to a vector.
     #[inline(always)]
-    pub(super) fn new<'a>(
-        simd: S,
-        spheres: impl ExactSizeIterator<Item = &'a Sphere> + Clone,
-        origin: DVec3,
-    ) -> Self {
+    pub(super) fn new<'a>(simd: S, spheres: impl ExactSizeIterator<Item = &'a Sphere> + Clone, origin: DVec3) -> Self {
         let count = spheres.len();
         let used = count.div_ceil(LANES).min(VECTORS);
         let mut vectors = [[f64x8::splat(simd, 0.0); 4]; VECTORS];
@@ -116,12 +112,7 @@ pub(super) fn columns<S: Simd>(simd: S, eight: [&Sphere; LANES], origin: DVec3) 
 /// How far spheres stick out of the one around `center`: `d² - (radius - r)²`, where the square has the sign of what is
 /// squared. That is the excess times about twice the radius, without a root; positive if a sphere sticks out.
 #[inline(always)]
-pub(super) fn measure<S: Simd>(
-    simd: S,
-    [x, y, z, r]: &[f64x8<S>; 4],
-    center: [f64; 3],
-    radius: f64,
-) -> f64x8<S> {
+pub(super) fn measure<S: Simd>(simd: S, [x, y, z, r]: &[f64x8<S>; 4], center: [f64; 3], radius: f64) -> f64x8<S> {
     let (dx, dy, dz) = (*x - center[0], *y - center[1], *z - center[2]);
     let room = f64x8::splat(simd, radius) - *r;
     (dx * dx + dy * dy + dz * dz) - room * room.abs()

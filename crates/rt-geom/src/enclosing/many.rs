@@ -244,13 +244,7 @@ impl<'a> Blocks<'a> {
 
     /// Calls `visit` with the spheres that may reach beyond `limit` from `center`.
     #[inline(always)]
-    pub(super) fn beyond<S: Simd>(
-        mut self,
-        simd: S,
-        center: [f64; 3],
-        limit: f64,
-        mut visit: impl FnMut(usize),
-    ) {
+    pub(super) fn beyond<S: Simd>(mut self, simd: S, center: [f64; 3], limit: f64, mut visit: impl FnMut(usize)) {
         self.go(center);
         let skip = self.skip(limit);
         for (block, bound) in self.bounds.iter().enumerate() {

@@ -365,13 +365,7 @@ mod tests {
     }
 
     /// So many spheres of this size: points, equal balls, any balls, or on a grid with reaches that are whole numbers.
-    fn some_at(
-        kind: usize,
-        count: usize,
-        offset: DVec3,
-        size: f64,
-        mut unit: impl FnMut() -> f64,
-    ) -> Vec<Sphere> {
+    fn some_at(kind: usize, count: usize, offset: DVec3, size: f64, mut unit: impl FnMut() -> f64) -> Vec<Sphere> {
         (0..count)
             .map(|_| {
                 let mut both = || 2.0 * unit() - 1.0;
@@ -424,9 +418,8 @@ mod tests {
     fn of_the_doubles_around_a_center_the_best_is_taken() {
         // Doubles are whole numbers here. The true center is half-way along two axes.
         let far = 2.0_f64.powi(52);
-        let points = |at: &[(f64, f64)]| -> Vec<Sphere> {
-            at.iter().map(|&(x, y)| ball(far + x, far + y, 0.0, 0.0)).collect()
-        };
+        let points =
+            |at: &[(f64, f64)]| -> Vec<Sphere> { at.iter().map(|&(x, y)| ball(far + x, far + y, 0.0, 0.0)).collect() };
         // From (0, 0) and (1, 1) the points reach √2.
         let pair = enclosing_sphere(&points(&[(0.0, 0.0), (1.0, 1.0)])).unwrap();
         assert_eq!(pair.sphere.radius(), 1.0, "{pair:?}");

@@ -368,8 +368,7 @@ mod tests {
         let parts = ways.min(range.len());
         let at = |part: usize| range.start + range.len() * part / parts;
         let parts: Vec<Range<usize>> = (0..parts).map(|part| at(part)..at(part + 1)).collect();
-        let below: Vec<Range<usize>> =
-            parts.iter().map(|part| cut(part.clone(), ways, smallest, nodes)).collect();
+        let below: Vec<Range<usize>> = parts.iter().map(|part| cut(part.clone(), ways, smallest, nodes)).collect();
         let start = nodes.len();
         nodes.extend(parts.into_iter().zip(below).map(|(leaves, children)| Node { leaves, children }));
         start..nodes.len()
@@ -410,10 +409,7 @@ mod tests {
                     let sphere = sphere.unwrap();
                     let below = &leaves[node.leaves.clone()];
                     for leaf in below {
-                        assert!(
-                            contains_exactly(sphere.center(), sphere.radius(), leaf),
-                            "{node:?} {leaf:?}"
-                        );
+                        assert!(contains_exactly(sphere.center(), sphere.radius(), leaf), "{node:?} {leaf:?}");
                     }
                     let minimal = enclosing_sphere(below).unwrap();
                     let spacing = sphere.center().abs().max_element() * 4.0 * U;

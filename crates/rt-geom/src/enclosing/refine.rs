@@ -56,11 +56,7 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
 
 /// The place, among `these`, of the sphere that sticks out farthest; `None` if it is of the support or does not
 /// stick out by more than a rounding error.
-fn farthest(
-    tangent: &Tangent<Wide>,
-    spheres: &[Sphere],
-    these: impl Iterator<Item = usize>,
-) -> Option<usize> {
+fn farthest(tangent: &Tangent<Wide>, spheres: &[Sphere], these: impl Iterator<Item = usize>) -> Option<usize> {
     let (center, radius) = tangent.sphere(spheres, DVec3::ZERO);
     let center = DVec3::from(center.map(Real::round));
     let radius = radius.round();

@@ -204,8 +204,7 @@ fn double_double_roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Op
     let c_error = 32.0 * U * U * (w_square.high() + radius_square.high()) + UNDERFLOW;
     let (small, large) = (c / q, q / a);
     let small_size = small.high().abs();
-    let small_error =
-        1.5 * (small_size * q_error + c_error) / q.high() + 32.0 * U * U * small_size + UNDERFLOW_T;
+    let small_error = 1.5 * (small_size * q_error + c_error) / q.high() + 32.0 * U * U * small_size + UNDERFLOW_T;
     let large_error = 1.1 * q_error / a.high() + 32.0 * U * U * large.high() + UNDERFLOW_T;
     let small = round_if_certain(small.high(), small.low(), small_error)?;
     let large = round_if_certain(large.high(), large.low(), large_error)?;
@@ -394,8 +393,7 @@ mod tests {
         // Exactly tangent, with numbers in a window of one limb, of two, and in none.
         for i in 0..192 {
             let sphere = Sphere::new(DVec3::ZERO, f64::from(i)).unwrap();
-            let origin =
-                DVec3::new(-[100.0, 2f64.powi(80), 2f64.powi(200)][i as usize % 3], f64::from(i), 0.0);
+            let origin = DVec3::new(-[100.0, 2f64.powi(80), 2f64.powi(200)][i as usize % 3], f64::from(i), 0.0);
             stages.count(&sphere, &Ray::new(origin, DVec3::X).unwrap());
         }
         let all = [stages.filter, stages.newton, stages.fixed, stages.double_double, stages.integers];

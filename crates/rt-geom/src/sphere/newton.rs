@@ -73,13 +73,7 @@ lanes_dispatch! {
 }
 
 #[inline(always)]
-fn closest_kernel<const FMA: bool, S: Simd>(
-    simd: S,
-    sphere: &Sphere,
-    ray: &Ray,
-    start: f64,
-    end: f64,
-) -> Option<f64> {
+fn closest_kernel<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, start: f64, end: f64) -> Option<f64> {
     let within = start..end;
     let root = match sphere.line::<FMA>(ray) {
         Line::Misses => return None,
@@ -289,9 +283,7 @@ mod tests {
             let (roots, truth) = (crossing.approximation(), Equation::new(&ray, &sphere));
             for place in [Place::Near, Place::Far] {
                 let simd = Fallback::new();
-                let Some((t, step, error)) =
-                    refined::<false, _>(simd, &sphere, &ray, &crossing, &roots, place)
-                else {
+                let Some((t, step, error)) = refined::<false, _>(simd, &sphere, &ray, &crossing, &roots, place) else {
                     continue;
                 };
                 steps += 1;

@@ -67,11 +67,7 @@ pub(super) fn exact_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> 
 /// Returns the correctly rounded `t` if it is in the range, and the weights.
 #[cold]
 #[inline(never)]
-pub(super) fn closest_with_weights(
-    triangle: &Triangle,
-    ray: &Ray,
-    within: Range<f64>,
-) -> Option<(f64, [f64; 3])> {
+pub(super) fn closest_with_weights(triangle: &Triangle, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
     ask(triangle, ray, |volumes| {
         let t = verdict(volumes.signs())?.is_hit().then(|| volumes.t())?;
         holds(&within, t).then(|| (t, volumes.weights()))
@@ -152,8 +148,7 @@ fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> 
     let beside_a = cross(&d, &a);
     let (u, v, w) = (dot(&cross(&d, &b), &c), -dot(&beside_a, &c), dot(&beside_a, &b));
     // False for NaN.
-    let certain =
-        |x: Number, bound: f64| (size < FARTHEST && x.high().abs() > bound).then(|| x.high().total_cmp(&0.0));
+    let certain = |x: Number, bound: f64| (size < FARTHEST && x.high().abs() > bound).then(|| x.high().total_cmp(&0.0));
     let sum = certain(u + v + w, 4.0 * error)?;
     Some([certain(u, error)?, certain(v, error)?, certain(w, error)?, sum])
 }
@@ -203,9 +198,8 @@ impl<const N: usize, const A: usize, const V: usize> Volumes for FixedVolumes<N,
     }
 
     fn turned_signs(&self) -> [Ordering; 3] {
-        [0, 1, 2].map(|i| {
-            self.planes[i].iter().fold(self.volumes[i].sign(), |sign, part| sign.then_with(|| part.sign()))
-        })
+        [0, 1, 2]
+            .map(|i| self.planes[i].iter().fold(self.volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
     }
 
     fn height_sign(&self) -> Ordering {
@@ -251,8 +245,7 @@ impl Volumes for WideVolumes<'_> {
 
     fn turned_signs(&self) -> [Ordering; 3] {
         let IntegerVolumes { planes, volumes, .. } = self.integers();
-        [0, 1, 2]
-            .map(|i| planes[i].iter().fold(volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
+        [0, 1, 2].map(|i| planes[i].iter().fold(volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
     }
 
     fn height_sign(&self) -> Ordering {
@@ -358,18 +351,12 @@ pub(crate) fn integer_difference<const LIMBS: usize>(p: DVec3, q: DVec3) -> [Dya
     [0, 1, 2].map(|i| Dyadic::from_f64(p[i]) - Dyadic::from_f64(q[i]))
 }
 
-pub(crate) fn integer_cross<const LIMBS: usize>(
-    v: &[Dyadic<LIMBS>; 3],
-    w: &[Dyadic<LIMBS>; 3],
-) -> [Dyadic<LIMBS>; 3] {
+pub(crate) fn integer_cross<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> [Dyadic<LIMBS>; 3] {
     let part = |j: usize, k: usize| &v[j] * &w[k] - &v[k] * &w[j];
     [part(1, 2), part(2, 0), part(0, 1)]
 }
 
-pub(crate) fn integer_dot<const LIMBS: usize>(
-    v: &[Dyadic<LIMBS>; 3],
-    w: &[Dyadic<LIMBS>; 3],
-) -> Dyadic<LIMBS> {
+pub(crate) fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> Dyadic<LIMBS> {
     &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
 }
 
@@ -385,9 +372,7 @@ pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
 pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
     let volumes = IntegerVolumes::new(triangle, ray);
     let sum = volumes.sum();
-    verdict(integer_signs(&volumes))?
-        .is_hit()
-        .then(|| [0, 1, 2].map(|i| Integer::quotient(&volumes.volumes[i], &sum)))
+    verdict(integer_signs(&volumes))?.is_hit().then(|| [0, 1, 2].map(|i| Integer::quotient(&volumes.volumes[i], &sum)))
 }
 
 #[cfg(test)]
@@ -487,11 +472,7 @@ mod tests {
             assert!(same(closest(triangle, ray, everywhere.clone())), "{triangle:?} {ray:?}");
             let weights = integer_weights(triangle, ray);
             assert_eq!(exact_weights(triangle, ray), weights, "{triangle:?} {ray:?}");
-            assert_eq!(
-                closest_with_weights(triangle, ray, everywhere),
-                t.zip(weights),
-                "{triangle:?} {ray:?}"
-            );
+            assert_eq!(closest_with_weights(triangle, ray, everywhere), t.zip(weights), "{triangle:?} {ray:?}");
         }
     }
 

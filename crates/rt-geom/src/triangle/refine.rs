@@ -75,12 +75,7 @@ fma_dispatch! {
 }
 
 #[inline(always)]
-fn both_kernel<const FMA: bool>(
-    triangle: &Triangle,
-    ray: &Ray,
-    start: f64,
-    end: f64,
-) -> Option<(f64, [f64; 3])> {
+fn both_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<(f64, [f64; 3])> {
     let within = start..end;
     let (t, weights) = match triangle.line::<FMA>(ray) {
         Line::Misses => return None,
@@ -282,8 +277,7 @@ mod tests {
             let [a, b, c] = [vector(state), vector(state), vector(state)];
             let target = a + random(state).abs() * (b - a) + random(state).abs() * (c - a);
             let origin = 5.0 * vector(state);
-            let (triangle, ray) =
-                (Triangle::new(a, b, c).unwrap(), Ray::new(origin, target - origin).unwrap());
+            let (triangle, ray) = (Triangle::new(a, b, c).unwrap(), Ray::new(origin, target - origin).unwrap());
             let end = f64::INFINITY;
             let t = closest_kernel::<false>(&triangle, &ray, 0.0, end);
             assert_eq!(t, closest_kernel::<true>(&triangle, &ray, 0.0, end));

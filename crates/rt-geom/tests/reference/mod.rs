@@ -284,11 +284,7 @@ pub(crate) fn scale(x: f64, k: i32) -> f64 {
         let e = ((x.abs().to_bits() >> 52) as i32) - 1023;
         x *= 2f64.powi(-e);
         k += e;
-        return if k < -1022 {
-            x * 2f64.powi(-1022) * 2f64.powi((k + 1022).max(-200))
-        } else {
-            x * 2f64.powi(k)
-        };
+        return if k < -1022 { x * 2f64.powi(-1022) * 2f64.powi((k + 1022).max(-200)) } else { x * 2f64.powi(k) };
     }
     x * 2f64.powi(k)
 }

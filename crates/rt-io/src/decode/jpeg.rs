@@ -65,10 +65,8 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
 
 /// Fills `samples` from a file whose frame was judged, or says what the decoder does not like.
 fn run(file: &[u8], samples: &mut [u8]) -> Result<(), String> {
-    let options = DecoderOptions::default()
-        .set_strict_mode(true)
-        .set_max_width(u16::MAX.into())
-        .set_max_height(u16::MAX.into());
+    let options =
+        DecoderOptions::default().set_strict_mode(true).set_max_width(u16::MAX.into()).set_max_height(u16::MAX.into());
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(file), options);
     decoder.decode_headers().map_err(|error| format!("{error:?}"))?;
     if decoder.input_colorspace() == Some(ColorSpace::Luma) {
@@ -133,8 +131,7 @@ impl Walk {
             if marker == 0xd9 {
                 break;
             }
-            let length =
-                usize::from(u16::from_be_bytes(*bytes.get(at..).and_then(<[u8]>::first_chunk).ok_or(ENDS)?));
+            let length = usize::from(u16::from_be_bytes(*bytes.get(at..).and_then(<[u8]>::first_chunk).ok_or(ENDS)?));
             if length < 2 {
                 return Err(broken("a segment without a length"));
             }
@@ -210,8 +207,7 @@ impl Walk {
         self.file.extend(whole);
         // In the first scan of a progressive file the decoder wants the marker right behind the data: it gets that scan
         // once as it is and once again with ones.
-        let mut plain =
-            if self.scans == 0 && frame.progressive && self.ones > 0 { whole.to_vec() } else { Vec::new() };
+        let mut plain = if self.scans == 0 && frame.progressive && self.ones > 0 { whole.to_vec() } else { Vec::new() };
         self.scans += 1;
         loop {
             let interval = data(bytes, *at).ok_or(ENDS)?;
@@ -282,8 +278,7 @@ impl Frame {
             return Err(broken("a width of 0"));
         }
         let (specified, _) = rest.as_chunks::<3>();
-        let specified =
-            specified.get(..usize::from(count)).ok_or_else(|| broken("a frame header ends early"))?;
+        let specified = specified.get(..usize::from(count)).ok_or_else(|| broken("a frame header ends early"))?;
         let component = |&[id, factors, _]: &[u8; 3]| Component {
             id,
             across: usize::from(factors >> 4),
@@ -298,8 +293,7 @@ impl Frame {
             // A single component is its own measure.
             (components[0].across, components[0].down) = (1, 1);
         } else if !components.iter().all(|one| valid(across, one.across) && valid(down, one.down)) {
-            let list: Vec<String> =
-                components.iter().map(|one| format!("{}x{}", one.across, one.down)).collect();
+            let list: Vec<String> = components.iter().map(|one| format!("{}x{}", one.across, one.down)).collect();
             return refuse(format!("sampling {}", list.join(",")));
         }
         // Every block of 8 x 8 samples of the first component takes a bit or more.
@@ -310,8 +304,7 @@ impl Frame {
 
     /// Blocks of a component: those of whole units, or those that the picture needs.
     fn units(&self) -> usize {
-        (self.size.width as usize).div_ceil(8 * self.across)
-            * (self.size.height as usize).div_ceil(8 * self.down)
+        (self.size.width as usize).div_ceil(8 * self.across) * (self.size.height as usize).div_ceil(8 * self.down)
     }
 
     fn coefficients(&self) -> usize {
@@ -324,15 +317,13 @@ impl Frame {
     /// number of interleaved units, or of blocks if there is one component.
     fn begin_scan(&mut self, header: &[u8]) -> Result<usize, DecodeError> {
         let Some((&count, rest)) = header.split_first() else { return Err(broken("a scan header")) };
-        let (selectors, band) =
-            rest.split_at_checked(2 * usize::from(count)).ok_or(broken("a scan header"))?;
+        let (selectors, band) = rest.split_at_checked(2 * usize::from(count)).ok_or(broken("a scan header"))?;
         let &[first, last, bits] = band else { return Err(broken("a scan header")) };
         let (high, low) = (bits >> 4, bits & 15);
         if !self.progressive && usize::from(count) != self.components.len() {
             return refuse("its components in several scans");
         }
-        let (first, last, high, low) =
-            if self.progressive { (first, last, high, low) } else { (0, 63, 0, 0) };
+        let (first, last, high, low) = if self.progressive { (first, last, high, low) } else { (0, 63, 0, 0) };
         if first > last || last > 63 || low > 13 || (self.progressive && first == 0 && last > 0) {
             return Err(broken("a band of coefficients that no scan can have"));
         }
@@ -352,8 +343,7 @@ impl Frame {
         self.refines |= high > 0;
         let mut units = self.units();
         if let [id, _] = *selectors {
-            let one =
-                self.components.iter().find(|component| component.id == id).map(|one| (one.across, one.down));
+            let one = self.components.iter().find(|component| component.id == id).map(|one| (one.across, one.down));
             let (x, y) = one.unwrap_or((1, 1));
             let (width, height) = (self.size.width as usize, self.size.height as usize);
             units = (width * x).div_ceil(8 * self.across) * (height * y).div_ceil(8 * self.down);

@@ -11,8 +11,7 @@ use crate::pixmap::{Pixmap, Samples};
 
 pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeError> {
     // The signature, the length and name of the first chunk, width, height.
-    let number =
-        |at: usize| bytes.get(at..).and_then(<[u8]>::first_chunk).map(|&four| u32::from_be_bytes(four));
+    let number = |at: usize| bytes.get(at..).and_then(<[u8]>::first_chunk).map(|&four| u32::from_be_bytes(four));
     let (Some(width), Some(height)) = (number(16), number(20)) else {
         return Err(DecodeError::Truncated { format: "PNG" });
     };
@@ -75,10 +74,8 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
         if wide {
             let (pairs, _) = row.as_chunks();
             let samples = pairs.iter().map(|&pair| u16::from_be_bytes(pair));
-            transparent |=
-                has_alpha && samples.clone().skip(kept).step_by(channels).any(|alpha| alpha != u16::MAX);
-            sixteen
-                .extend(samples.enumerate().filter(|(at, _)| at % channels < kept).map(|(_, sample)| sample));
+            transparent |= has_alpha && samples.clone().skip(kept).step_by(channels).any(|alpha| alpha != u16::MAX);
+            sixteen.extend(samples.enumerate().filter(|(at, _)| at % channels < kept).map(|(_, sample)| sample));
         } else if has_alpha {
             for pixel in row.chunks_exact(channels) {
                 transparent |= pixel[kept] != u8::MAX;
@@ -90,8 +87,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     }
     // The rest of the file: the checksum of the samples, and the last chunk.
     reader.finish().map_err(error)?;
-    let (maxval, samples) =
-        if wide { (65535, Samples::Sixteen(sixteen)) } else { (255, Samples::Eight(eight)) };
+    let (maxval, samples) = if wide { (65535, Samples::Sixteen(sixteen)) } else { (255, Samples::Eight(eight)) };
     let pixmap = Pixmap::from_checked(columns, rows, maxval, samples);
     let pixmap = pixmap.ok_or_else(|| DecodeError::broken("PNG", "rows of another length"))?;
     Ok(Decoded { pixmap, transparent })

@@ -56,20 +56,17 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     // As grey of so many samples, the decoder gives what is stored, as it is.
     let mut patches = vec![(tag::PHOTOMETRIC_INTERPRETATION, 1)];
     let tile = if directory.has(tag::TILE_OFFSETS) {
-        let tile =
-            (number(tag::TILE_WIDTH, "width of a tile")?, number(tag::TILE_LENGTH, "height of a tile")?);
+        let tile = (number(tag::TILE_WIDTH, "width of a tile")?, number(tag::TILE_LENGTH, "height of a tile")?);
         check(tile.0, tile.1)?;
         // The decoder fails on what fills up the last tiles of a row: it may find no end of LZW data there. So it is told of
         // whole tiles alone. (It panics on planes of tiles only if asked for the whole picture.)
         let whole = width.checked_next_multiple_of(tile.0);
-        patches
-            .push((tag::IMAGE_WIDTH, whole.ok_or_else(|| refuse("tiles that reach too far".to_string()))?));
+        patches.push((tag::IMAGE_WIDTH, whole.ok_or_else(|| refuse("tiles that reach too far".to_string()))?));
         Some(tile)
     } else {
         None
     };
-    let patches =
-        directory.patches(&patches).ok_or_else(|| refuse("a tag of an unusual type".to_string()))?;
+    let patches = directory.patches(&patches).ok_or_else(|| refuse("a tag of an unusual type".to_string()))?;
     let decoder = Decoder::new(Patched { file: Cursor::new(bytes), patches }).map_err(error)?;
     let (across, down) = tile.unwrap_or((width, decoder.chunk_dimensions().1.min(height)));
     let (across, down) = (usize::try_from(across), usize::try_from(down));
@@ -105,8 +102,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     for chunk in 0..wide * high {
         let (left, top) = (chunk % wide * across, chunk / wide * down);
         for (plane, packed) in packed.iter_mut().enumerate() {
-            let index =
-                u32::try_from(plane * wide * high + chunk).map_err(|_| size.out_of_memory(u64::MAX))?;
+            let index = u32::try_from(plane * wide * high + chunk).map_err(|_| size.out_of_memory(u64::MAX))?;
             decoder.read_chunk_bytes(index, packed).map_err(error)?;
         }
         let row_bytes = chunk_bytes / down;
@@ -125,8 +121,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
                     Colors::WhiteIsZero => set(&mut samples, at, [(full - sample(0)) * scale]),
                     Colors::Rgb => set(&mut samples, at, [0, 1, 2].map(sample)),
                     Colors::Palette(palette) => {
-                        let color =
-                            |channel: usize| palette[channel * (palette.len() / 3) + usize::from(sample(0))];
+                        let color = |channel: usize| palette[channel * (palette.len() / 3) + usize::from(sample(0))];
                         set(&mut samples, at, [0, 1, 2].map(color));
                     }
                 }

@@ -99,9 +99,7 @@ impl<'a> Directory<'a> {
             }
             let bytes: Vec<u8> = number.to_le_bytes().into_iter().take(length).collect();
             patches.extend(
-                (0..length).map(|index| {
-                    (at + index, bytes[if self.big_endian { length - 1 - index } else { index }])
-                }),
+                (0..length).map(|index| (at + index, bytes[if self.big_endian { length - 1 - index } else { index }])),
             );
         }
         Some(patches)

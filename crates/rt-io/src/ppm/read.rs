@@ -218,11 +218,7 @@ pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Pixmap, PpmError> {
 
 /// Reads a picture from a reader that holds `length` bytes, if that is known. A wrong length costs time or memory, no
 /// more: what arrives is what counts.
-pub(crate) fn read_known(
-    reader: impl Read,
-    length: Option<u64>,
-    limits: &Limits,
-) -> Result<Pixmap, PpmError> {
+pub(crate) fn read_known(reader: impl Read, length: Option<u64>, limits: &Limits) -> Result<Pixmap, PpmError> {
     Ok(Source::new(reader, length).pixmap(limits)?.0)
 }
 
@@ -296,8 +292,7 @@ impl<R: Read> Source<R> {
             let samples = if header.plain { self.plain(&header, convert)? } else { self.bytes(&header)? };
             Samples::Eight(samples)
         } else {
-            let samples =
-                if header.plain { self.plain(&header, |value| value)? } else { self.pairs(&header)? };
+            let samples = if header.plain { self.plain(&header, |value| value)? } else { self.pairs(&header)? };
             Samples::Sixteen(samples)
         };
         let size = |number| usize::try_from(number).map_err(|_| header.out_of_memory());
@@ -376,12 +371,7 @@ impl<R: Read> Source<R> {
         let limit = limits.max_pixels.min(isize::MAX as u64 / 6);
         if pixels > limit {
             let Header { width: columns, height: rows, .. } = header;
-            return Err(PpmError::TooManyPixels {
-                offset: width.offset,
-                width: columns,
-                height: rows,
-                limit,
-            });
+            return Err(PpmError::TooManyPixels { offset: width.offset, width: columns, height: rows, limit });
         }
 
         // The one byte that ends maxval; a comment that touches it ends with that byte.
@@ -526,8 +516,7 @@ impl<R: Read> Source<R> {
         let mut samples = Vec::new();
         while (samples.len() as u64) < expected {
             header.make_room(&mut samples, self.remaining())?;
-            let room =
-                samples.capacity().min(usize::try_from(expected).unwrap_or(usize::MAX)) - samples.len();
+            let room = samples.capacity().min(usize::try_from(expected).unwrap_or(usize::MAX)) - samples.len();
             let window = &self.buffer[self.start..self.end];
             let window = &window[..window.len().min(room)];
             samples.extend_from_slice(window);
@@ -558,8 +547,7 @@ impl<R: Read> Source<R> {
             if samples.len() == samples.capacity() {
                 header.make_room(&mut samples, self.remaining().map(|bytes| bytes / 2))?;
             }
-            let room =
-                samples.capacity().min(usize::try_from(expected).unwrap_or(usize::MAX)) - samples.len();
+            let room = samples.capacity().min(usize::try_from(expected).unwrap_or(usize::MAX)) - samples.len();
             let (pairs, _) = self.buffer[self.start..self.end].as_chunks::<2>();
             let pairs = &pairs[..pairs.len().min(room)];
             samples.extend(pairs.iter().map(|&pair| u16::from_be_bytes(pair)));
@@ -576,11 +564,9 @@ impl<R: Read> Source<R> {
     /// Refuses a raw raster that is known to be too short.
     fn check_remaining(&self, expected: u64, sample_size: u64) -> Result<(), PpmError> {
         match self.remaining() {
-            Some(bytes) if bytes < expected * sample_size => Err(PpmError::RasterEnds {
-                offset: self.offset() + bytes,
-                expected,
-                found: bytes / sample_size,
-            }),
+            Some(bytes) if bytes < expected * sample_size => {
+                Err(PpmError::RasterEnds { offset: self.offset() + bytes, expected, found: bytes / sample_size })
+            }
             _ => Ok(()),
         }
     }
@@ -593,8 +579,7 @@ fn check_maxval<S: Copy + Into<u16>>(samples: &[S], maxval: u16, raster: u64) ->
     // In blocks, so that the common case needs no branch per sample.
     for (index, block) in samples.chunks(4096).enumerate() {
         if block.iter().fold(0, |most, &sample| sample.into().max(most)) > maxval {
-            let within =
-                block.iter().position(|&sample| sample.into() > maxval).expect("the block holds one");
+            let within = block.iter().position(|&sample| sample.into() > maxval).expect("the block holds one");
             let position = index * 4096 + within;
             return Err(PpmError::SampleAboveMaxval {
                 offset: raster + (position * size_of::<S>()) as u64,

@@ -57,12 +57,7 @@ pub fn write_with_comment(
 }
 
 /// Writes the picture with more lines, if any, behind the first.
-fn write_lines(
-    pixmap: &Pixmap,
-    encoding: Encoding,
-    lines: &str,
-    out: &mut (impl Write + ?Sized),
-) -> io::Result<()> {
+fn write_lines(pixmap: &Pixmap, encoding: Encoding, lines: &str, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let magic = match encoding {
         Encoding::Raw => "P6",
         Encoding::Plain => "P3",
@@ -71,21 +66,13 @@ fn write_lines(
     match (encoding, pixmap.raw()) {
         (Encoding::Raw, Samples::Eight(samples)) => in_rgb(pixmap, samples, |rows| out.write_all(rows)),
         (Encoding::Raw, Samples::Sixteen(samples)) => in_rgb(pixmap, samples, |rows| write_pairs(rows, out)),
-        (Encoding::Plain, Samples::Eight(samples)) => {
-            in_rgb(pixmap, samples, |rows| write_plain(pixmap, rows, out))
-        }
-        (Encoding::Plain, Samples::Sixteen(samples)) => {
-            in_rgb(pixmap, samples, |rows| write_plain(pixmap, rows, out))
-        }
+        (Encoding::Plain, Samples::Eight(samples)) => in_rgb(pixmap, samples, |rows| write_plain(pixmap, rows, out)),
+        (Encoding::Plain, Samples::Sixteen(samples)) => in_rgb(pixmap, samples, |rows| write_plain(pixmap, rows, out)),
     }
 }
 
 /// Hands whole rows of RGB samples on: all at once, or some rows at a time of a picture that is stored as grey.
-fn in_rgb<S: Copy>(
-    pixmap: &Pixmap,
-    samples: &[S],
-    mut write: impl FnMut(&[S]) -> io::Result<()>,
-) -> io::Result<()> {
+fn in_rgb<S: Copy>(pixmap: &Pixmap, samples: &[S], mut write: impl FnMut(&[S]) -> io::Result<()>) -> io::Result<()> {
     if !pixmap.is_grey() {
         return write(samples);
     }
@@ -116,11 +103,7 @@ fn write_pairs(samples: &[u16], out: &mut (impl Write + ?Sized)) -> io::Result<(
 /// Each number is followed by a space. A line ends after as many whole pixels as netpbm puts on one (what fits in 79 bytes
 /// if a number took one byte less than `maxval` with its space does), and again with the row, so that a row that fills
 /// its last line is followed by an empty one.
-fn write_plain<S: Copy + Into<u16>>(
-    pixmap: &Pixmap,
-    samples: &[S],
-    out: &mut (impl Write + ?Sized),
-) -> io::Result<()> {
+fn write_plain<S: Copy + Into<u16>>(pixmap: &Pixmap, samples: &[S], out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let digits = pixmap.maxval().ilog10() as usize + 1;
     let fit = 79 / digits;
     let line = fit - fit % 3;

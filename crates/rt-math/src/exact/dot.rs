@@ -134,8 +134,7 @@ mod tests {
 
     #[test]
     fn benign_vectors_are_decided_by_the_filter() {
-        let [filter, integers] =
-            check_class(70, |rng| [[0; 3]; 2].map(|v| v.map(|_| rng.with_exponent(-4..2))));
+        let [filter, integers] = check_class(70, |rng| [[0; 3]; 2].map(|v| v.map(|_| rng.with_exponent(-4..2))));
         assert!(filter > 1000 * (integers + 1), "{filter} {integers}");
     }
 
@@ -159,8 +158,7 @@ mod tests {
     #[test]
     fn exactly_perpendicular_vectors_have_none() {
         let [_, integers] = check_class(73, |rng| {
-            let small =
-                [0; 3].map(|_| f64::from(rng.integer(-1000..1000)) * 2f64.powi(rng.integer(-400..400)));
+            let small = [0; 3].map(|_| f64::from(rng.integer(-1000..1000)) * 2f64.powi(rng.integer(-400..400)));
             // halves of a cross product: x y - y x + 0 z
             [small, [-small[1], small[0], 0.0]]
         });
@@ -187,9 +185,8 @@ mod tests {
             let found = difference_dot_sign(a.into(), b.into(), n.into());
             let [filter, _, _, integers] = decisions();
             total = [total[0] + filter, total[1] + integers];
-            let sum = (0..3)
-                .map(|i| (exact(a[i]) - exact(b[i])) * exact(n[i]))
-                .fold(exact(0.0), |sum, term| sum + term);
+            let sum =
+                (0..3).map(|i| (exact(a[i]) - exact(b[i])) * exact(n[i])).fold(exact(0.0), |sum, term| sum + term);
             assert_eq!(found, Some(sum.cmp(&exact(0.0))), "({a:?} - {b:?}) . {n:?}");
         }
         total
@@ -197,8 +194,7 @@ mod tests {
 
     #[test]
     fn points_well_off_a_plane_are_decided_by_the_filter() {
-        let [filter, integers] =
-            check_differences(75, |rng| [[0; 3]; 3].map(|v| v.map(|_| rng.with_exponent(-4..2))));
+        let [filter, integers] = check_differences(75, |rng| [[0; 3]; 3].map(|v| v.map(|_| rng.with_exponent(-4..2))));
         assert!(filter > 1000 * (integers + 1), "{filter} {integers}");
     }
 
@@ -229,22 +225,13 @@ mod tests {
         for _ in 0..cases(1_000_000) {
             // all corners are multiples of one unit below 2^30 of it, and so is the normal of two edges, in its square
             let scale = 2f64.powi(rng.integer(-400..400));
-            let [a, b, e, f] =
-                [[0; 3]; 4].map(|v| DVec3::from_array(v.map(|_| f64::from(rng.integer(-1000..1000)))));
+            let [a, b, e, f] = [[0; 3]; 4].map(|v| DVec3::from_array(v.map(|_| f64::from(rng.integer(-1000..1000)))));
             let n = e.cross(f) * 2f64.powi(rng.integer(-400..400));
             let [s, t] = [0; 2].map(|_| f64::from(rng.integer(-1000..1000)));
             let [in_plane, b] = [(b + s * e + t * f) * scale, b * scale];
-            assert_eq!(
-                difference_dot_sign(in_plane, b, n),
-                Some(Ordering::Equal),
-                "{in_plane:?} {b:?} {n:?}"
-            );
+            assert_eq!(difference_dot_sign(in_plane, b, n), Some(Ordering::Equal), "{in_plane:?} {b:?} {n:?}");
             assert_eq!(difference_dot_sign(a, a, n), Some(Ordering::Equal), "the point itself, {a:?} {n:?}");
-            assert_eq!(
-                difference_dot_sign(a, b, DVec3::ZERO),
-                Some(Ordering::Equal),
-                "no normal, {a:?} {b:?}"
-            );
+            assert_eq!(difference_dot_sign(a, b, DVec3::ZERO), Some(Ordering::Equal), "no normal, {a:?} {b:?}");
         }
     }
 

@@ -165,8 +165,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
             if r.len == 0 {
                 return Self::quotient(p, q);
             }
-            let (lower, upper) =
-                enclose(r.leading().map_or(Interval::ZERO, Leading::sqrt), q_leading.interval());
+            let (lower, upper) = enclose(r.leading().map_or(Interval::ZERO, Leading::sqrt), q_leading.interval());
             let magnitude = decide(lower, upper, |twice_midpoint: &Self| {
                 (r + r).scale(1).cmp_magnitude(&(twice_midpoint * q).square())
             });
@@ -204,8 +203,8 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
         let top = self.len.checked_sub(1)?;
         let shift = self.limbs[top].leading_zeros();
         let below = |depth| if top < depth { 0 } else { self.limbs[top - depth] };
-        let wide = (u128::from(self.limbs[top]) << 64 | u128::from(below(1))) << shift
-            | (u128::from(below(2)) << shift) >> 64;
+        let wide =
+            (u128::from(self.limbs[top]) << 64 | u128::from(below(1))) << shift | (u128::from(below(2)) << shift) >> 64;
         // the lowest live limb is not zero: with a third one, something is left after 64 bits
         let sticky = low(wide) != 0 || top >= 2;
         let exponent = 64 * (self.base + index(top)) - shift.cast_signed();
@@ -297,8 +296,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     /// `|self| - |other|` with the sign of `self`; needs `|self| > |other| > 0`.
     fn sub_magnitude(&self, other: &Self) -> Self {
         let base = self.base.min(other.base);
-        let mut difference =
-            Self { negative: self.negative, base, len: span(base, self.top()), ..Self::ZERO };
+        let mut difference = Self { negative: self.negative, base, len: span(base, self.top()), ..Self::ZERO };
         let at = span(base, self.base);
         difference.limbs[at..at + self.len].copy_from_slice(self.live());
         let mut borrow = false;
@@ -454,11 +452,7 @@ impl<const LIMBS: usize> core::fmt::Debug for Dyadic<LIMBS> {
 
 /// Chooses between two equal or neighbouring doubles that enclose a positive value: `compare(2 m)` tells how the value
 /// compares with the midpoint `m` of the two.
-fn decide<const LIMBS: usize>(
-    lower: f64,
-    upper: f64,
-    compare: impl FnOnce(&Dyadic<LIMBS>) -> Ordering,
-) -> f64 {
+fn decide<const LIMBS: usize>(lower: f64, upper: f64, compare: impl FnOnce(&Dyadic<LIMBS>) -> Ordering) -> f64 {
     if lower == upper {
         return upper;
     }
@@ -473,11 +467,7 @@ fn decide<const LIMBS: usize>(
 }
 
 /// A limb count as a signed position.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    reason = "at most LIMBS, a few hundred"
-)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most LIMBS, a few hundred")]
 fn index(limbs: usize) -> i32 {
     limbs as i32
 }

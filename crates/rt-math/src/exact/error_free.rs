@@ -120,11 +120,7 @@ mod tests {
             let (value, error) = two_prod::<false>(a, b);
             assert_eq!(exact(value) + exact(error), exact(a) * exact(b), "{a:e} * {b:e}");
             let fused = two_prod::<true>(a, b);
-            assert_eq!(
-                (value.to_bits(), error.to_bits()),
-                (fused.0.to_bits(), fused.1.to_bits()),
-                "{a:e} * {b:e}"
-            );
+            assert_eq!((value.to_bits(), error.to_bits()), (fused.0.to_bits(), fused.1.to_bits()), "{a:e} * {b:e}");
         }
         assert!(in_range > 3_000, "{in_range}");
     }

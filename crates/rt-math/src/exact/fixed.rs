@@ -69,8 +69,7 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         for i in 0..A {
             let mut carry = 0;
             for j in 0..B {
-                let wide =
-                    u128::from(a.0[i]) * u128::from(b.0[j]) + u128::from(product[i + j]) + u128::from(carry);
+                let wide = u128::from(a.0[i]) * u128::from(b.0[j]) + u128::from(product[i + j]) + u128::from(carry);
                 (product[i + j], carry) = (low(wide), high(wide));
             }
             product[i + B] = carry;
@@ -127,10 +126,7 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
     #[must_use]
     pub fn to_f64(&self, exponent: i32) -> f64 {
         let Some(leading) = self.leading() else { return 0.0 };
-        signed(
-            round(u128::from(leading.bits), leading.exponent + exponent, leading.sticky),
-            self.is_negative(),
-        )
+        signed(round(u128::from(leading.bits), leading.exponent + exponent, leading.sticky), self.is_negative())
     }
 
     /// The correctly rounded quotient `numerator / denominator · 2^exponent`, with ties, range and zero as in
@@ -192,14 +188,13 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         let (p_leading, r_leading) = (p.leading(), r.leading());
         // The root of r times 4^-half is in 1..2, or zero.
         let half = r_leading.map_or(0, |r| (r.exponent + 63).div_euclid(2));
-        let whole = p_leading
-            .map_or(half, |p| if r_leading.is_some() { half.max(p.exponent + 63) } else { p.exponent + 63 });
+        let whole =
+            p_leading.map_or(half, |p| if r_leading.is_some() { half.max(p.exponent + 63) } else { p.exponent + 63 });
         let (p_shift, r_shift) = (p_leading.map_or(0, |p| p.exponent + 63 - whole), half - whole);
         let scale = if adds { whole - (other.exponent + 63) } else { other.exponent + 63 - whole } + exponent;
         if SAFE.contains(&scale) && p_shift > -SMALL && r_shift > -SMALL {
             let odd = r_leading.map_or(0, |r| (r.exponent + 63).rem_euclid(2));
-            let [p, root, other] =
-                [p_leading, r_leading, Some(other)].map(|x| x.unwrap_or(zero).high_and_low());
+            let [p, root, other] = [p_leading, r_leading, Some(other)].map(|x| x.unwrap_or(zero).high_and_low());
             let shifts = [power_of_two(p_shift), power_of_two(odd), power_of_two(r_shift)];
             if let Some(quotient) = rounded_root(p, root, other, shifts, adds) {
                 return signed(quotient * power_of_two(scale), negative);
@@ -244,8 +239,7 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
             return None;
         }
         let shift = limb(0).leading_zeros();
-        let wide =
-            (u128::from(limb(0)) << 64 | u128::from(limb(1))) << shift | (u128::from(limb(2)) << shift) >> 64;
+        let wide = (u128::from(limb(0)) << 64 | u128::from(limb(1))) << shift | (u128::from(limb(2)) << shift) >> 64;
         let rest = (3..LIMBS).fold(limb(2) << shift, |rest, depth| rest | limb(depth));
         let exponent = position(top) - shift.cast_signed();
         Some(Leading { bits: high(wide), next: low(wide), exponent, sticky: low(wide) != 0 || rest != 0 })
@@ -616,11 +610,7 @@ mod tests {
                 let q = q + q;
                 let half = |sum: Fixed<1>| Fixed::<1>([sum.0[0] >> 1 | sum.0[0] & 1 << 63]);
                 let (sum, product) = (Fixed::<2>::product(&half(q), &(x + y)), Fixed::<2>::product(&x, &y));
-                (
-                    sum,
-                    q,
-                    Fixed([Fixed::<3>::product(&product, &q).0[0], Fixed::<3>::product(&product, &q).0[1]]),
-                )
+                (sum, q, Fixed([Fixed::<3>::product(&product, &q).0[0], Fixed::<3>::product(&product, &q).0[1]]))
             };
             let r = Fixed::<4>::product(&p, &p) - Fixed::<3>::product(&c, &q).widen();
             let (p_truth, r_truth, q_truth) = (value(&p, 0), value(&r, 0), value(&q, 0));
@@ -643,10 +633,7 @@ mod tests {
                     };
                     if q_truth < Exact::ZERO { order.reverse() } else { order }
                 };
-                assert!(
-                    oracle::is_rounding_of(found, sign),
-                    "{p:?} {minus} {r:?} {q:?} {c:?} {exponent}: {found:e}"
-                );
+                assert!(oracle::is_rounding_of(found, sign), "{p:?} {minus} {r:?} {q:?} {c:?} {exponent}: {found:e}");
             }
         }
         assert!(cancelling > 1_000, "{cancelling}");

@@ -67,9 +67,7 @@ impl<const V: usize, const Q: usize> Quotients<V, Q> {
         let [g12, g20, g01] = [g(1, 2), g(2, 0), g(0, 1)];
         let row = |i: usize, j: usize, k: usize, others: Fixed<S>, ij: &Fixed<S>, ik: &Fixed<S>| {
             [0, 1, 2].map(|n| {
-                Fixed::product(&others, &a[i][n])
-                    - Fixed::product(ij, &a[j][n])
-                    - Fixed::product(ik, &a[k][n])
+                Fixed::product(&others, &a[i][n]) - Fixed::product(ij, &a[j][n]) - Fixed::product(ik, &a[k][n])
             })
         };
         let rows = [
@@ -138,10 +136,7 @@ fma_dispatch! {
 }
 
 #[inline(always)]
-fn in_double_double_kernel<const FMA: bool>(
-    numerators: [[f64; 2]; 9],
-    [denominator, low]: [f64; 2],
-) -> [[f64; 2]; 9] {
+fn in_double_double_kernel<const FMA: bool>(numerators: [[f64; 2]; 9], [denominator, low]: [f64; 2]) -> [[f64; 2]; 9] {
     let Some(reciprocal) = Reciprocal::<FMA>::new(denominator, low, CUT * denominator.abs()) else {
         return [[0.0, f64::NAN]; 9];
     };

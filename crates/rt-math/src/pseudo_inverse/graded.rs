@@ -30,8 +30,7 @@ pub(super) fn inverse(m: &DMat3) -> Option<DMat3> {
     for k in 0..9 {
         scaled[k] = shifted(entries[k], -rows[k % 3] - columns[k / 3])?;
     }
-    let regular =
-        || fixed::pseudo_inverse(&DMat3::from_cols_array(&scaled)).filter(|answer| answer.rank == 3);
+    let regular = || fixed::pseudo_inverse(&DMat3::from_cols_array(&scaled)).filter(|answer| answer.rank == 3);
     let inverse = regular::inverse::<false>(&scaled).or_else(|| Some(regular()?.matrix))?.to_cols_array();
     let mut answer = [0.0; 9];
     for k in 0..9 {

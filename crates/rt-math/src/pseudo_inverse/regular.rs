@@ -58,8 +58,7 @@ fn parts<const FMA: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
     let y = [x[0] + x[1], x[0] + x[1] + x[2], first_error + second_error];
     let low = y[1] + y[2];
     let sum = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
-    let bound =
-        1.125 * U * (sum([a[0] * b[0], a[1] * b[1], a[2] * b[2]]) + sum(v) + sum(x) + sum(y) + low.abs());
+    let bound = 1.125 * U * (sum([a[0] * b[0], a[1] * b[1], a[2] * b[2]]) + sum(v) + sum(x) + sum(y) + low.abs());
 
     Some((Adjugate { h, l, b }, Reciprocal::new(s, low, bound)?))
 }
@@ -89,8 +88,7 @@ pub(super) fn row_sums<const FMA: bool>(m: &[f64; 9]) -> Option<DVec3> {
         let errors = first_error + second_error;
         let low = errors + ((l[k] + l[k + 3]) + l[k + 6]);
         // Four additions of terms that are no larger than the sum of these magnitudes.
-        let terms =
-            (first_error.abs() + second_error.abs()) + ((l[k].abs() + l[k + 3].abs()) + l[k + 6].abs());
+        let terms = (first_error.abs() + second_error.abs()) + ((l[k].abs() + l[k + 3].abs()) + l[k + 6].abs());
         let (lower, upper) = reciprocal.times(sum, low, 4.0 * terms + 1.125 * ((b[k] + b[k + 3]) + b[k + 6]));
         certain &= lower == upper;
         sums[k] = upper;

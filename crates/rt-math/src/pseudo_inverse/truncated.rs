@@ -17,8 +17,7 @@ pub(super) fn truncated(m: &DMat3, rtol: f64, exact: PseudoInverse) -> PseudoInv
     // squares underflow, which the lower limit excludes.
     const MARGIN: f64 = 1.0 - 1e-6;
     const SMALLEST_SQUARE: f64 = 1e-200;
-    let square =
-        |m: &DMat3| m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared();
+    let square = |m: &DMat3| m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared();
     let (a, x) = (square(m), square(&exact.matrix));
     if exact.rank <= 1 || a > SMALLEST_SQUARE && x > SMALLEST_SQUARE && rtol * (a * x).sqrt() < MARGIN {
         return exact;
@@ -101,8 +100,7 @@ fn rotate(g: &mut [DVec3; 3], v: &mut [DVec3; 3], p: usize, q: usize) -> bool {
 /// The matrix of cofactors, each within a few units in the last place, for entries of at most 2 in magnitude.
 fn cofactors(m: &DMat3) -> DMat3 {
     let minor = |a: f64, b: f64, c: f64, d: f64| {
-        let ((first, first_error), (second, second_error)) =
-            (two_prod::<false>(a, d), two_prod::<false>(b, c));
+        let ((first, first_error), (second, second_error)) = (two_prod::<false>(a, d), two_prod::<false>(b, c));
         (first - second) + (first_error - second_error)
     };
     let cross = |x: DVec3, y: DVec3| {

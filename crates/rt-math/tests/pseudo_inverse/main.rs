@@ -41,9 +41,7 @@ fn for_every_class(cases: usize, check: impl Fn(&str, &DMat3) + Sync) {
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
-                while let Some((name, class)) =
-                    CLASSES.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
-                {
+                while let Some((name, class)) = CLASSES.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
                     let mut random = Random(name.len() as u64);
                     for _ in 0..cases {
                         let m = class(&mut random);

@@ -67,11 +67,7 @@ impl Random {
                 let other = usize::try_from(self.integer(0, k)).unwrap();
                 columns.swap(usize::try_from(k).unwrap(), other);
             }
-            m = DMat3::from_cols(
-                columns[0] * self.sign(),
-                columns[1] * self.sign(),
-                columns[2] * self.sign(),
-            );
+            m = DMat3::from_cols(columns[0] * self.sign(), columns[1] * self.sign(), columns[2] * self.sign());
             if self.one_in(2) {
                 m = m.transpose();
             }
@@ -177,8 +173,7 @@ fn rank_two(random: &mut Random) -> DMat3 {
         1 => {
             let limit = random.integer(1, 20);
             let digit = |r: &mut Random| r.small(limit);
-            outer(random.vector(digit), random.vector(digit))
-                + outer(random.vector(digit), random.vector(digit))
+            outer(random.vector(digit), random.vector(digit)) + outer(random.vector(digit), random.vector(digit))
         }
         // A column twice, up to a power of two.
         2 => {
@@ -325,10 +320,8 @@ fn permuted_diagonal(random: &mut Random) -> DMat3 {
 fn midpoints(random: &mut Random) -> DMat3 {
     let m = if random.one_in(2) {
         // The inverse of this triangle holds a c - b = M, an odd number of 54 bits.
-        let wanted = (1 << 53)
-            + random.integer(0, (1 << 52) - 1) * 2
-            + 1
-            + random.integer(-1, 1) * random.integer(0, 1);
+        let wanted =
+            (1 << 53) + random.integer(0, (1 << 52) - 1) * 2 + 1 + random.integer(-1, 1) * random.integer(0, 1);
         let a = random.integer(1 << 26, (1 << 27) - 1);
         let c = wanted / a + random.integer(-2, 2);
         let b = a * c - wanted;

@@ -67,11 +67,7 @@ fn integers(m: &DMat3) -> (Integers, i64) {
     let exponent = parts.iter().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0);
     let entry = |k: usize| {
         let (mantissa, e) = parts[k];
-        if mantissa == 0 {
-            IBig::ZERO
-        } else {
-            IBig::from(mantissa) << usize::try_from(e - exponent).unwrap()
-        }
+        if mantissa == 0 { IBig::ZERO } else { IBig::from(mantissa) << usize::try_from(e - exponent).unwrap() }
     };
     ((0..3).map(|i| (0..3).map(|j| entry(3 * i + j)).collect()).collect(), exponent)
 }
@@ -79,8 +75,7 @@ fn integers(m: &DMat3) -> (Integers, i64) {
 /// `x` as an integer times a power of two.
 fn decode(x: f64) -> (i64, i64) {
     let bits = x.to_bits();
-    let (biased, fraction) =
-        (i64::try_from(bits >> 52 & 0x7ff).unwrap(), i64::try_from(bits << 12 >> 12).unwrap());
+    let (biased, fraction) = (i64::try_from(bits >> 52 & 0x7ff).unwrap(), i64::try_from(bits << 12 >> 12).unwrap());
     let magnitude = if biased == 0 { fraction } else { fraction | 1 << 52 };
     (if x < 0.0 { -magnitude } else { magnitude }, biased.max(1) - 1075)
 }
@@ -121,8 +116,7 @@ fn cofactor(a: &Integers, i: usize, j: usize) -> IBig {
         return IBig::ONE;
     }
     let without = |skip: usize| (0..a.len()).filter(move |&k| k != skip);
-    let minor: Integers =
-        without(i).map(|row| without(j).map(|column| a[row][column].clone()).collect()).collect();
+    let minor: Integers = without(i).map(|row| without(j).map(|column| a[row][column].clone()).collect()).collect();
     if (i + j).is_multiple_of(2) { determinant(&minor) } else { -determinant(&minor) }
 }
 
@@ -164,11 +158,7 @@ fn quotient(n: &IBig, d: &IBig, exponent: i64) -> f64 {
 
 /// `2^n` for `n` in -1074..=1023.
 fn power_of_two(n: i64) -> f64 {
-    if n < -1022 {
-        f64::from_bits(1 << (n + 1074))
-    } else {
-        f64::from_bits(u64::try_from(n + 1023).unwrap() << 52)
-    }
+    if n < -1022 { f64::from_bits(1 << (n + 1074)) } else { f64::from_bits(u64::try_from(n + 1023).unwrap() << 52) }
 }
 
 /// Asserts the four Penrose conditions for `x`, each entry of which is the rounding of that of the pseudo-inverse.
@@ -214,9 +204,7 @@ fn absolute(a: &Integers) -> Integers {
 #[test]
 fn quotients_are_rounded_as_the_hardware_does() {
     let integer = |x: i64| IBig::from(x);
-    for (n, d) in
-        [(1, 3), (-1, 3), (2, 3), (1, -10), ((1 << 53) + 1, 1), ((1 << 53) + 3, 1), (i64::MAX, 7), (5, 4)]
-    {
+    for (n, d) in [(1, 3), (-1, 3), (2, 3), (1, -10), ((1 << 53) + 1, 1), ((1 << 53) + 3, 1), (i64::MAX, 7), (5, 4)] {
         assert_eq!(quotient(&integer(n), &integer(d), 0), n as f64 / d as f64, "{n} / {d}");
     }
     // Around half of the smallest subnormal, and around the midpoint between the largest double and 2^1024.
