@@ -223,7 +223,7 @@ pub fn count_tests(scene: &Path, size: PictureSize) -> Result<(), Failure> {
     let tests: u64 = (0..height)
         .into_par_iter()
         .flat_map_iter(|row| (0..width).map(move |column| (column, row)))
-        .map(|(column, row)| tree.closest_counted(&view.ray(column, row), AHEAD).1 as u64)
+        .map(|(column, row)| tree.closest_counted(&view.ray(column, row), AHEAD).1.tests as u64)
         .sum();
     let rays = u64::from(width) * u64::from(height);
     let per_ray = tests as f64 / rays as f64;

@@ -98,7 +98,8 @@ fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
     };
     let truth: Vec<Option<Hit>> = few.iter().map(plain).collect();
     let fewer = &few[..few.len().div_ceil(4)];
-    let tests: usize = fewer.iter().map(|ray| halving.closest_counted(ray, within.clone()).1).sum();
+    let tests: usize =
+        fewer.iter().map(|ray| halving.closest_counted(ray, within.clone()).1).map(|v| v.nodes + v.tests).sum();
     let each = |closest: &dyn Fn(&Ray) -> Option<Hit>, rays: &[Ray], hits: &mut [Option<Hit>]| {
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = closest(ray);

@@ -2,7 +2,9 @@
 
 mod bvh;
 mod enclosing;
+mod hilbert;
 mod inside;
+mod leaf;
 mod plane;
 mod ray;
 mod shape;
@@ -12,12 +14,12 @@ mod sphere_tree;
 mod stage;
 mod triangle;
 
-pub use bvh::{Bvh, Visits};
+pub use bvh::Bvh;
 pub use enclosing::{Enclosing, enclosing_sphere};
 pub use inside::{Inside, inside_triangle};
 pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
-pub use shape::{Hit, Shape};
+pub use shape::{Hit, Shape, Visits};
 pub use sphere::{Side, Sphere};
 pub use sphere_tree::SphereTree;
 pub use triangle::{Triangle, Verdict};

@@ -174,11 +174,13 @@ pub(crate) fn holds(within: &Range<f64>, t: f64) -> bool {
 #[cold]
 fn holds_at_the_ends(within: &Range<f64>, t: f64) -> bool {
     let Range { start, end } = *within;
-    !start.is_nan()
-        && !end.is_nan()
-        && start.total_cmp(&end).is_lt()
-        && start.total_cmp(&t).is_le()
-        && (t.total_cmp(&end).is_lt() || end == f64::INFINITY)
+    is_open(within) && start.total_cmp(&t).is_le() && (t.total_cmp(&end).is_lt() || end == f64::INFINITY)
+}
+
+/// Whether a range holds any number.
+#[inline(always)]
+pub(crate) fn is_open(within: &Range<f64>) -> bool {
+    !within.start.is_nan() && !within.end.is_nan() && within.start.total_cmp(&within.end).is_lt()
 }
 
 /// The larger number; the second if either is NaN. One instruction, unlike `f64::max`.

@@ -19,3 +19,13 @@ pub enum Shape {
     /// A triangle.
     Triangle(Triangle),
 }
+
+/// What a query did, for reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Visits {
+    /// Tests of bounds: in a [`Bvh`](crate::Bvh) of up to sixteen at once, in a [`SphereTree`](crate::SphereTree) of one
+    /// sphere.
+    pub nodes: usize,
+    /// Primitives that met the exact test.
+    pub tests: usize,
+}

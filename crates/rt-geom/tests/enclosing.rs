@@ -528,6 +528,7 @@ fn trees_of_two_balls_and_a_triangle_are_built_anywhere() {
         let triangles = vec![Triangle::new(a, b, c).expect("finite")];
         let fast = Bvh::new(spheres.clone(), triangles.clone());
         let halves = SphereTree::new(spheres.clone(), triangles.clone());
+        let sorted = SphereTree::sorted(spheres.clone(), triangles.clone());
         for target in [spheres[0].center(), spheres[1].center(), (a + b + c) / 3.0, a] {
             let Some(ray) = Ray::new(DVec3::ZERO, target) else { continue };
             let range = 0.0..f64::INFINITY;
@@ -538,7 +539,11 @@ fn trees_of_two_balls_and_a_triangle_are_built_anywhere() {
                 .enumerate()
                 .filter_map(|(index, t)| t.map(|t| (t, index)))
                 .min_by(|x, y| x.0.total_cmp(&y.0));
-            for hit in [fast.closest(&ray, range.clone()), halves.closest(&ray, range.clone())] {
+            for hit in [
+                fast.closest(&ray, range.clone()),
+                halves.closest(&ray, range.clone()),
+                sorted.closest(&ray, range.clone()),
+            ] {
                 assert_eq!(hit.map(|hit| (hit.t, hit.index)), plain, "{spheres:?} {triangles:?} {ray:?}");
             }
         }

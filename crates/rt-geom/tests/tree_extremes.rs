@@ -195,7 +195,7 @@ struct Counts {
     infinite: usize,
 }
 
-/// Casts `rays` rays; the report's tree answers those at every tenth scene.
+/// Casts `rays` rays.
 fn compare(seed: u64, rays: usize) -> Counts {
     let mut rng = Rng::new(seed);
     let mut counts = Counts::default();
@@ -209,7 +209,8 @@ fn compare(seed: u64, rays: usize) -> Counts {
         let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         let level = ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"][turn % 6];
         let tree = tree.clone().with_simd(level).unwrap_or(tree);
-        let halving = (turn % 8 == 0).then(|| SphereTree::new(scene.spheres.clone(), scene.triangles.clone()));
+        let sphere_tree = [SphereTree::new, SphereTree::sorted][turn % 2];
+        let sphere_tree = sphere_tree(scene.spheres.clone(), scene.triangles.clone());
         let hits: Vec<Vec<Hit>> = rays.iter().map(|ray| all_hits(&scene, ray)).collect();
         let mut check = |within: &Range<f64>, chosen: Range<usize>| {
             let (rays, hits) = (&rays[chosen.clone()], &hits[chosen]);
@@ -228,11 +229,9 @@ fn compare(seed: u64, rays: usize) -> Counts {
                 assert_eq!(tree.any(ray, within.clone()), is_hit, "any: {}", message());
                 assert_eq!(bits(batch[i]), expected, "batch: {}", message());
                 assert_eq!(any[i], is_hit, "batch of any: {}", message());
-                if let Some(halving) = &halving {
-                    let found = bits(halving.closest(ray, within.clone()));
-                    assert_eq!(found, expected, "halving: {}", message());
-                    assert_eq!(halving.any(ray, within.clone()), is_hit, "halving, any: {}", message());
-                }
+                let found = bits(sphere_tree.closest(ray, within.clone()));
+                assert_eq!(found, expected, "sphere tree: {}", message());
+                assert_eq!(sphere_tree.any(ray, within.clone()), is_hit, "sphere tree, any: {}", message());
             }
         };
         check(&(0.0..f64::INFINITY), 0..rays.len());
@@ -282,13 +281,15 @@ fn a_direction_of_a_few_units_of_the_smallest_double_in_a_small_scene() {
 #[test]
 fn hits_at_minus_infinity_are_equal() {
     let tree = Bvh::new(row(DVec3::X, 0.25), vec![]);
-    let halving = SphereTree::new(row(DVec3::X, 0.25), vec![]);
+    let (listed, sorted) =
+        (SphereTree::new(row(DVec3::X, 0.25), vec![]), SphereTree::sorted(row(DVec3::X, 0.25), vec![]));
     for direction in [1e-300, -1e-300] {
         let origin = DVec3::X * (direction * 1e300) * 1e9;
         let ray = Ray::new(origin, DVec3::X * direction).unwrap();
         let expected = Some(Hit { index: 0, t: f64::NEG_INFINITY });
         assert_eq!(tree.closest(&ray, ALL), expected, "{ray:?}");
-        assert_eq!(halving.closest(&ray, ALL), expected, "{ray:?}");
+        assert_eq!(listed.closest(&ray, ALL), expected, "{ray:?}");
+        assert_eq!(sorted.closest(&ray, ALL), expected, "{ray:?}");
         let mut batch = [None; 2];
         tree.closest_batch(&[ray; 2], ALL, &mut batch);
         assert_eq!(batch, [expected; 2], "{ray:?}");

@@ -11,13 +11,13 @@ use std::ops::Range;
 use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::Bvh;
-use super::cull::{Line, box_keys, meet_balls, meet_boxes};
-use super::node::{Child, Kind, WIDTH};
-use super::walk::{Areas, Best, ask};
-use crate::Hit;
-use crate::Ray;
+use super::cull::{Line, box_keys};
+use super::node::{Block, Blocked, Child, Kind, WIDTH};
+use super::walk::{Areas, meet};
+use crate::leaf::Query;
 use crate::ray::PreparedRay;
-use crate::simd::{has_fma, prefetch_lines};
+use crate::simd::prefetch_lines;
+use crate::{Ray, Sphere, Triangle};
 
 /// Rays on their way at once.
 const FLIGHT: usize = 64;
@@ -26,10 +26,10 @@ const FLIGHT: usize = 64;
 const LANE: u32 = 15;
 const _: () = assert!(WIDTH == 16);
 
-struct Slot<'a> {
+struct Slot<'a, Q> {
     line: Line,
     ray: PreparedRay<'a>,
-    best: Best,
+    query: Q,
     at: Child,
     height: usize,
     /// Whose answer it is.
@@ -44,12 +44,12 @@ struct Stacks {
     nodes: Vec<u32>,
 }
 
-impl<'a> Slot<'a> {
+impl<'a, Q: Query> Slot<'a, Q> {
     fn new(ray: &'a Ray, within: &Range<f64>, base: usize) -> Self {
         Self {
             line: Line::EVERYTHING,
             ray: PreparedRay::new(ray, within.clone()),
-            best: Best::NONE,
+            query: Q::default(),
             at: Child::from_bits(0),
             height: 0,
             target: 0,
@@ -94,18 +94,17 @@ struct Survivors {
     len: usize,
 }
 
-/// Casts all rays and hands each answer to `answer`, in no particular order.
+/// Answers a query for all rays.
 #[inline(always)]
-pub(super) fn fly<S: Simd>(
+pub(super) fn fly<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
     rays: &[Ray],
     within: &Range<f64>,
-    any: bool,
-    mut answer: impl FnMut(usize, Option<Hit>),
+    answers: &mut [Q::Answer],
 ) {
     let Some(root) = tree.root else {
-        (0..rays.len()).for_each(|i| answer(i, None));
+        answers.fill_with(Q::Answer::default);
         return;
     };
     let areas = Areas::of(tree);
@@ -115,48 +114,19 @@ pub(super) fn fly<S: Simd>(
     // A step writes sixteen entries, however many are met.
     let depth = tree.stack + WIDTH;
     let flight = FLIGHT.min(rays.len());
-    let mut slots: Vec<Slot> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
+    let mut slots: Vec<Slot<Q>> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
     let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
     for (at, slot) in slots.iter_mut().enumerate() {
-        if launch(simd, slot, root, tree, within, &mut waiting, &mut answer) {
+        if launch(simd, slot, root, tree, within, &mut waiting, answers) {
             lists.push(root.kind() as usize, at);
         }
     }
     let mut flying: usize = lists.len.iter().sum();
-    let mut survivors = [Survivors::NONE, Survivors::NONE];
+    let (mut spheres, mut triangles) = (Survivors::NONE, Survivors::NONE);
     while flying > 0 {
-        // What the cull left in the last round. A slot's survivors follow each other.
-        for (kind, survivors) in [SPHERES, TRIANGLES].into_iter().zip(&mut survivors) {
-            let len = std::mem::take(&mut survivors.len);
-            for i in 0..len {
-                let (place, at) = (survivors.places[i] as usize, survivors.slots[i] as usize);
-                let slot = &mut slots[at];
-                if any {
-                    let met = !slot.best.exists()
-                        && if kind == SPHERES {
-                            ask!(simd, tree.spheres[place], meets(&slot.ray))
-                        } else {
-                            ask!(simd, tree.triangles[place], meets(&slot.ray))
-                        };
-                    if met {
-                        slot.best = Best::SOME;
-                        slot.height = 0;
-                    }
-                    continue;
-                }
-                let limit = slot.best.limit();
-                let (bounds, place) = if kind == SPHERES {
-                    (ask!(simd, tree.spheres[place], candidate(&slot.ray, limit)), place)
-                } else {
-                    (ask!(simd, tree.triangles[place], candidate(&slot.ray, limit)), tree.spheres.len() + place)
-                };
-                if let Some(bounds) = bounds
-                    && slot.best.offer(bounds, place, tree, &slot.ray)
-                {
-                    slot.line.shorten(slot.best.limit());
-                }
-            }
-        }
+        // What the cull left in the last round.
+        spheres.meet::<S, Q, Sphere>(simd, tree, &mut slots);
+        triangles.meet::<S, Q, Triangle>(simd, tree, &mut slots);
         // In a loop of its own: the loads of one slot need not wait for the stores of another.
         let (resumed, len) = lists.take(RESUME);
         for &at in &resumed[..len] {
@@ -190,37 +160,19 @@ pub(super) fn fly<S: Simd>(
             slot.height += count;
             lists.push(RESUME, at);
         }
-        let (leaf, len) = lists.take(SPHERES);
-        for &at in &leaf[..len] {
-            let slot = &mut slots[usize::from(at)];
-            let block = slot.at.index();
-            let met = meet_balls(simd, &slot.line, &tree.sphere_blocks[block]);
-            survivors[0].add(simd, met, block, at);
-            lists.push(RESUME, usize::from(at));
+        spheres.cull(simd, &tree.sphere_blocks, SPHERES, &mut slots, &mut lists);
+        for &place in &spheres.places[..spheres.len] {
+            prefetch_lines(&tree.leaves.spheres[place as usize], 1);
         }
-        for i in 0..survivors[0].len {
-            prefetch_lines(&tree.spheres[survivors[0].places[i] as usize], 1);
-        }
-        let (leaf, len) = lists.take(TRIANGLES);
-        for &at in &leaf[..len] {
-            let slot = &mut slots[usize::from(at)];
-            let block = slot.at.index();
-            let met = meet_boxes(simd, &slot.line, &tree.triangle_blocks[block], &mut [0; WIDTH]);
-            survivors[1].add(simd, met, block, at);
-            lists.push(RESUME, usize::from(at));
-        }
-        for i in 0..survivors[1].len {
-            prefetch_lines(&tree.triangles[survivors[1].places[i] as usize], 2);
+        triangles.cull(simd, &tree.triangle_blocks, TRIANGLES, &mut slots, &mut lists);
+        for &place in &triangles.places[..triangles.len] {
+            prefetch_lines(&tree.leaves.triangles[place as usize], 2);
         }
         let (done, len) = lists.take(DONE);
         for &at in &done[..len] {
             let slot = &mut slots[usize::from(at)];
-            if any {
-                answer(slot.target, slot.best.exists().then_some(Hit { index: 0, t: 0.0 }));
-            } else {
-                answer(slot.target, slot.best.hit(tree, &slot.ray));
-            }
-            if launch(simd, slot, root, tree, within, &mut waiting, &mut answer) {
+            answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
+            if launch(simd, slot, root, tree, within, &mut waiting, answers) {
                 lists.push(root.kind() as usize, usize::from(at));
             } else {
                 flying -= 1;
@@ -231,32 +183,32 @@ pub(super) fn fly<S: Simd>(
 
 /// Puts the next ray that may meet anything into the slot; `false` if none is left.
 #[inline(always)]
-fn launch<'a, S: Simd>(
+fn launch<'a, S: Simd, Q: Query>(
     simd: S,
-    slot: &mut Slot<'a>,
+    slot: &mut Slot<'a, Q>,
     root: Child,
     tree: &Bvh,
     within: &Range<f64>,
     waiting: &mut impl Iterator<Item = (usize, &'a Ray)>,
-    answer: &mut impl FnMut(usize, Option<Hit>),
+    answers: &mut [Q::Answer],
 ) -> bool {
     for (target, ray) in waiting {
         slot.ray = PreparedRay::new(ray, within.clone());
         if slot.line.set(simd, &tree.frame, &slot.ray) {
-            slot.best = Best::NONE;
+            slot.query = Q::default();
             slot.at = root;
             slot.height = 0;
             slot.target = target;
             return true;
         }
-        answer(target, None);
+        answers[target] = Q::Answer::default();
     }
     false
 }
 
 /// Takes the nearest pending part that is still of interest.
 #[inline(always)]
-fn next(slot: &mut Slot, tree: &Bvh, stacks: &Stacks) -> Option<Child> {
+fn next<Q>(slot: &mut Slot<Q>, tree: &Bvh, stacks: &Stacks) -> Option<Child> {
     let last = slot.line.last_key();
     let mut top = slot.base + slot.height;
     while top > slot.base && stacks.keys[top - 1] & !LANE > last {
@@ -274,6 +226,43 @@ fn next(slot: &mut Slot, tree: &Bvh, stacks: &Stacks) -> Option<Child> {
 
 impl Survivors {
     const NONE: Self = Self { places: [0; _], slots: [0; _], len: 0 };
+
+    /// Culls the leaf blocks where slots are.
+    #[inline(always)]
+    fn cull<S: Simd, Q, B: Block>(
+        &mut self,
+        simd: S,
+        blocks: &[B],
+        list: usize,
+        slots: &mut [Slot<Q>],
+        lists: &mut Lists,
+    ) {
+        let (leaf, len) = lists.take(list);
+        for &at in &leaf[..len] {
+            let slot = &slots[usize::from(at)];
+            let block = slot.at.index();
+            self.add(simd, blocks[block].meet(simd, &slot.line), block, at);
+            lists.push(RESUME, usize::from(at));
+        }
+    }
+
+    /// Hands all to the queries of their slots. A slot's survivors follow each other.
+    #[inline(always)]
+    fn meet<S: Simd, Q: Query, L: Blocked>(&mut self, simd: S, tree: &Bvh, slots: &mut [Slot<Q>]) {
+        let len = std::mem::take(&mut self.len);
+        for i in 0..len {
+            let (place, at) = (self.places[i] as usize, self.slots[i] as usize);
+            let slot = &mut slots[at];
+            let before = slot.query.limit();
+            meet::<S, Q, L>(simd, &mut slot.query, place, &tree.leaves, &slot.ray);
+            if slot.query.is_settled() {
+                slot.height = 0;
+            }
+            if slot.query.limit() < before {
+                slot.line.shorten(slot.query.limit());
+            }
+        }
+    }
 
     #[inline(always)]
     fn add<S: Simd>(&mut self, simd: S, met: u32, block: usize, slot: u8) {

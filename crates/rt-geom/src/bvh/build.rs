@@ -9,7 +9,6 @@
 //! 3. Where no cut can part the centers, of equal primitives only the one of the lowest index is kept: the others, its
 //!    *twins*, come last in the range, and no node or leaf block has a bound for them.
 //! 4. A node takes in the largest of its children until it has sixteen.
-//! 5. Every child gets its minimal ball.
 //!
 //! The two sides of a cut are built in parallel. Where things lie depends on the counts alone, never on the order in
 //! which threads finish, so the tree is the same for any number of threads.
@@ -21,40 +20,88 @@ use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*, u32x8};
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::node::{COORDINATE_ERROR, Child, Kind, Node, WIDTH};
+use super::node::{Block, Blocked, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH};
 use super::rank::{self, ascending};
-use crate::Sphere;
-use crate::enclosing::nodes::{self, enclosing_nodes};
+
+/// The tree while it grows: first over the spheres, then over the triangles.
+#[derive(Default)]
+pub(super) struct Trunk {
+    pub(super) nodes: Vec<Node>,
+    /// The index of the primitive at each place.
+    pub(super) index: Vec<u32>,
+    parts: Vec<(Part, Branch)>,
+}
+
+impl Trunk {
+    /// Grows a tree over the primitives, and returns them in leaf order with their leaf blocks.
+    pub(super) fn plant<L: Blocked>(&mut self, leaves: Vec<L>, frame: &Frame) -> (Vec<L>, Vec<L::Block>) {
+        let first = self.index.len();
+        let number = |place: usize| u32::try_from(place).expect("fewer than 2^32 primitives");
+        let item = |(place, leaf): (usize, &L)| {
+            let (low, high) = leaf.extent(frame);
+            Item::new(low, high, number(place))
+        };
+        let mut items: Vec<Item> = leaves.par_iter().enumerate().map(item).collect();
+        let branches = binary_tree(&mut items, &|a, b| leaves[a as usize].order(&leaves[b as usize]));
+        if let Some(&whole) = branches.first() {
+            self.parts.push((collapse(&branches, L::KIND, &mut self.nodes), whole));
+        }
+        drop(branches);
+        self.index.extend(items.iter().map(|item| item.index() + number(first)));
+        let sorted: Vec<L> = items.par_iter().map(|item| leaves[item.index() as usize]).collect();
+        let block = |(leaves, items): (&[L], &[Item])| {
+            let mut block = L::Block::EMPTY;
+            for (lane, (leaf, _)) in leaves.iter().zip(items).enumerate().filter(|(_, (_, item))| !item.is_twin()) {
+                block.bound(lane, leaf, frame);
+            }
+            block
+        };
+        let blocks = sorted.par_chunks(WIDTH).zip(items.par_chunks(WIDTH)).map(block).collect();
+        (sorted, blocks)
+    }
+
+    /// Joins what was planted under one root; returns it, and how many pending entries a walk can need.
+    pub(super) fn join(&mut self) -> (Option<Child>, usize) {
+        let root = match self.parts[..] {
+            [] => (None, 0),
+            [(part, _)] => (Some(part.child), part.stack),
+            _ => {
+                let mut join = Node::EMPTY;
+                for (lane, (part, whole)) in self.parts.iter().enumerate() {
+                    join.children[lane] = part.child;
+                    join.boxes.set(lane, whole.low, whole.high);
+                }
+                self.nodes.push(join);
+                let stack = self.parts.iter().map(|(part, _)| part.stack).max().unwrap_or(0);
+                (Some(Child::new(Kind::Inner, self.nodes.len() - 1)), stack + self.parts.len())
+            }
+        };
+        self.nodes.shrink_to_fit();
+        root
+    }
+}
 
 /// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` whether it is a twin; no arithmetic uses that
 /// lane's value.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
+struct Item {
     low: Vec4,
     high: Vec4,
 }
 
 impl Item {
-    pub(super) fn new(low: [f32; 3], high: [f32; 3], index: u32) -> Self {
+    fn new(low: [f32; 3], high: [f32; 3], index: u32) -> Self {
         let [x, y, z] = low;
         Self { low: Vec4::new(x, y, z, f32::from_bits(index)), high: Vec4::new(high[0], high[1], high[2], 0.0) }
     }
 
-    pub(super) fn index(&self) -> u32 {
+    fn index(&self) -> u32 {
         self.low.w.to_bits()
     }
 
     /// Whether a primitive of lower index, in the same part of the tree, is equal to this one.
-    pub(super) fn is_twin(&self) -> bool {
+    fn is_twin(&self) -> bool {
         self.high.w > 0.0
-    }
-
-    pub(super) fn low(&self) -> [f32; 3] {
-        self.low.truncate().to_array()
-    }
-
-    pub(super) fn high(&self) -> [f32; 3] {
-        self.high.truncate().to_array()
     }
 
     /// Twice the center.
@@ -97,17 +144,17 @@ impl Bounds {
 /// A node of the binary tree, in preorder: its first side follows it, its second follows that. A side with `k` leaf
 /// blocks has `2 k - 1` nodes, so both sides know where they lie before they are built.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Branch {
-    pub(super) low: [f32; 3],
-    pub(super) high: [f32; 3],
+struct Branch {
+    low: [f32; 3],
+    high: [f32; 3],
     /// Leaf blocks of the first side, with those of its twins; 0 for a leaf block.
-    pub(super) first: u32,
+    first: u32,
 }
 
 impl Branch {
     const NONE: Self = Self { low: [0.0; 3], high: [0.0; 3], first: 0 };
 
-    pub(super) fn half_area(&self) -> f32 {
+    fn half_area(&self) -> f32 {
         let [x, y, z]: [f32; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
         x * y + y * z + z * x
     }
@@ -119,14 +166,14 @@ const PARALLEL: usize = 4096;
 const SORTED: usize = rank::MOST;
 const BINS: usize = 32;
 /// The binary tree is never deeper: where the best cuts would lead there, the range is halved.
-pub(super) const MAX_DEPTH: u32 = 64;
+const MAX_DEPTH: u32 = 64;
 
 /// The spread of doubled centers up to which no cut parts them: boxes are wider by that alone.
 #[expect(clippy::cast_possible_truncation, reason = "a power of two")]
 const COINCIDENT: f32 = 2.0 * COORDINATE_ERROR as f32;
 
 /// Sorts the items into leaf order and returns the binary tree over them.
-pub(super) fn binary_tree(items: &mut [Item], order: Order) -> Vec<Branch> {
+fn binary_tree(items: &mut [Item], order: Order) -> Vec<Branch> {
     let leaves = items.len().div_ceil(WIDTH);
     let mut branches = vec![Branch::NONE; (2 * leaves).saturating_sub(1)];
     if leaves > 0 {
@@ -137,7 +184,7 @@ pub(super) fn binary_tree(items: &mut [Item], order: Order) -> Vec<Branch> {
 }
 
 /// How the primitives with two indices compare: as equal only if every ray gets the same answer from both.
-pub(super) type Order<'a> = &'a (dyn Fn(u32, u32) -> Ordering + Sync);
+type Order<'a> = &'a (dyn Fn(u32, u32) -> Ordering + Sync);
 
 /// Bounds of the items and of their middles.
 #[derive(Clone, Copy)]
@@ -425,7 +472,7 @@ fn binned_cut(items: &mut [Item], extent: &Extent, spread: Vec4) -> usize {
     first
 }
 
-/// Puts the items for which `first` holds before the others, without a branch on what cannot be foretold (N. Lomuto's way).
+/// Puts the items for which `first` holds before the others, without a branch that cannot be predicted (N. Lomuto's way).
 #[inline(always)]
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) {
     let mut border = 0;
@@ -444,23 +491,19 @@ fn move_to_border(items: &mut [Item], many: usize, order: impl Fn(&Item, &Item) 
 
 /// A part of the collapsed tree.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
-    pub(super) child: Child,
+struct Part {
+    child: Child,
     /// How many entries a walk can need to keep for later.
-    pub(super) stack: usize,
+    stack: usize,
 }
 
-/// The leaf blocks below each child of a node; an unused lane has none.
-pub(super) type Spans = [Range<usize>; WIDTH];
-
 /// Turns the binary tree into nodes of up to sixteen children each, with leaf blocks of the given kind, and appends
-/// them, parents first; and for each node which leaf blocks its children hold.
+/// them, parents first.
 ///
 /// Of all ways to do so it takes the one with the least sum of the nodes' surfaces, which is the number of nodes that
 /// a random ray is expected to visit.
-pub(super) fn collapse(branches: &[Branch], kind: Kind, nodes: &mut Vec<Node>, spans: &mut Vec<Spans>) -> Part {
-    let mut collapse = Collapse { branches, costs: costs(branches), kind, nodes, spans };
-    collapse.part(0, 0..branches.len().div_ceil(2))
+fn collapse(branches: &[Branch], kind: Kind, nodes: &mut Vec<Node>) -> Part {
+    Collapse { branches, costs: costs(branches), kind, nodes }.part(0, 0)
 }
 
 /// For each branch and `j` the least cost of what is below it as at most `j + 1` children of one node.
@@ -492,25 +535,23 @@ struct Collapse<'a> {
     costs: Vec<[f32; WIDTH]>,
     kind: Kind,
     nodes: &'a mut Vec<Node>,
-    spans: &'a mut Vec<Spans>,
 }
 
 impl Collapse<'_> {
-    /// The part below the branch `at`, which holds the leaf blocks `leaves`, those of twins included. The recursion is no deeper than the
-    /// binary tree, so [`MAX_DEPTH`] bounds it.
-    fn part(&mut self, at: usize, leaves: Range<usize>) -> Part {
+    /// The part below the branch `at`, whose first leaf block is `leaf`. The recursion is no deeper than the binary tree, so
+    /// [`MAX_DEPTH`] bounds it.
+    fn part(&mut self, at: usize, leaf: usize) -> Part {
         if self.branches[at].first == 0 {
-            return Part { child: Child::new(self.kind, leaves.start), stack: 0 };
+            return Part { child: Child::new(self.kind, leaf), stack: 0 };
         }
         let mut parts = Vec::with_capacity(WIDTH);
-        self.share(at, leaves, WIDTH - 1, &mut parts);
+        self.share(at, leaf, WIDTH - 1, &mut parts);
         let index = self.nodes.len();
         self.nodes.push(Node::EMPTY);
-        self.spans.push(std::array::from_fn(|lane| parts.get(lane).map_or(0..0, |(_, leaves)| leaves.clone())));
         let mut stack = 0;
-        for (lane, (at, leaves)) in parts.iter().enumerate() {
-            let part = self.part(*at, leaves.clone());
-            let Branch { low, high, .. } = self.branches[*at];
+        for (lane, &(at, leaf)) in parts.iter().enumerate() {
+            let part = self.part(at, leaf);
+            let Branch { low, high, .. } = self.branches[at];
             self.nodes[index].children[lane] = part.child;
             self.nodes[index].boxes.set(lane, low, high);
             stack = stack.max(part.stack);
@@ -520,48 +561,21 @@ impl Collapse<'_> {
     }
 
     /// Collects the children that make up the branch `at` at the least cost, sharing `j + 1` places between its sides.
-    fn share(&self, at: usize, leaves: Range<usize>, j: usize, parts: &mut Vec<(usize, Range<usize>)>) {
+    fn share(&self, at: usize, leaf: usize, j: usize, parts: &mut Vec<(usize, usize)>) {
         let first = self.branches[at].first as usize;
         let (left, right) = (at + 1, at + 2 * first);
         let cheapest = shares(&self.costs[left], &self.costs[right], j).min_by(|a, b| a.1.total_cmp(&b.1));
         let (k, _) = cheapest.expect("two places or more");
-        let middle = leaves.start + first;
-        self.fill(left, leaves.start..middle, k, parts);
-        self.fill(right, middle..leaves.end, j - 1 - k, parts);
+        self.fill(left, leaf, k, parts);
+        self.fill(right, leaf + first, j - 1 - k, parts);
     }
 
     /// Collects the branch `at` as at most `j + 1` children.
-    fn fill(&self, at: usize, leaves: Range<usize>, mut j: usize, parts: &mut Vec<(usize, Range<usize>)>) {
+    fn fill(&self, at: usize, leaf: usize, mut j: usize, parts: &mut Vec<(usize, usize)>) {
         let cost = &self.costs[at];
         while j > 0 && cost[j - 1] <= cost[j] {
             j -= 1;
         }
-        if j == 0 { parts.push((at, leaves)) } else { self.share(at, leaves, j, parts) }
+        if j == 0 { parts.push((at, leaf)) } else { self.share(at, leaf, j, parts) }
     }
-}
-
-/// The minimal spheres of the children of nodes that [`collapse`] appended from `first` on; `None` for an unused lane and
-/// where no finite sphere encloses. There are `per_block` spheres to a leaf block; the last block may have fewer.
-pub(super) fn minimal_spheres(
-    nodes: &[Node],
-    first: usize,
-    spans: &[Spans],
-    spheres: &[Sphere],
-    per_block: usize,
-) -> Vec<[Option<Sphere>; WIDTH]> {
-    // Children first: parents come first in `nodes`.
-    let mut list = Vec::new();
-    let mut lists = vec![0..0; spans.len()];
-    for (at, spans) in spans.iter().enumerate().rev() {
-        let start = list.len();
-        for (child, blocks) in nodes[first + at].children().iter().zip(spans) {
-            let children = if child.kind() == Kind::Inner { lists[child.index() - first].clone() } else { 0..0 };
-            let leaves = blocks.start * per_block..spheres.len().min(blocks.end * per_block);
-            list.push(nodes::Node { leaves, children });
-        }
-        lists[at] = start..list.len();
-    }
-    let found = enclosing_nodes(spheres, &list);
-    let of = |list: Range<usize>| std::array::from_fn(|lane| found[list.clone()].get(lane).copied().flatten());
-    lists.into_iter().map(of).collect()
 }

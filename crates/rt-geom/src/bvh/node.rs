@@ -4,11 +4,14 @@
 //! rounded outward when they are narrowed, so a bound contains exactly what it bounds; what the arithmetic of a query
 //! loses is made up for by the query's own slack (`cull.rs`).
 
+use std::cmp::Ordering;
+
 use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
 
-use super::cull::four;
-use crate::Sphere;
+use super::cull::{Line, four, meet_balls, meet_boxes};
+use crate::leaf::{Leaf, Leaves};
+use crate::{Sphere, Triangle};
 
 /// Children of a node, and primitives of a leaf block.
 pub(super) const WIDTH: usize = 16;
@@ -41,11 +44,6 @@ impl Balls {
         }
         self.radius.0[lane] = ball.radius;
     }
-
-    /// Makes the lane an unused one.
-    pub(super) fn clear(&mut self, lane: usize) {
-        self.set(lane, Ball { center: [f32::NAN; 3], radius: 0.0 });
-    }
 }
 
 /// Up to sixteen boxes: the three lower planes, then the three upper ones. An unused lane is inside out.
@@ -65,15 +63,124 @@ impl Boxes {
             self.0[axis + 3].0[lane] = high[axis];
         }
     }
+}
 
-    /// Makes the lane an unused one.
-    pub(super) fn clear(&mut self, lane: usize) {
-        self.set(lane, [f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+/// A leaf block: the bounds of up to sixteen primitives of one kind.
+pub(super) trait Block: Copy + Send {
+    type Leaf: Blocked<Block = Self>;
+
+    /// No lane in use.
+    const EMPTY: Self;
+
+    /// Bounds the primitive in this lane.
+    fn bound(&mut self, lane: usize, leaf: &Self::Leaf, frame: &Frame);
+
+    /// Which primitives a ray may meet, as bits.
+    fn meet<S: Simd>(&self, simd: S, line: &Line) -> u32;
+}
+
+impl Block for Balls {
+    type Leaf = Sphere;
+    const EMPTY: Self = Self::EMPTY;
+
+    fn bound(&mut self, lane: usize, leaf: &Sphere, frame: &Frame) {
+        self.set(lane, frame.ball(leaf));
+    }
+
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, line: &Line) -> u32 {
+        meet_balls(simd, line, self)
     }
 }
 
-/// An inner node, as a walk sees it: the boxes of its children, because boxes cull better above the leaf blocks
-/// (`benches/peers` measures it). Their minimal balls, the tree's definition, lie aside.
+impl Block for Boxes {
+    type Leaf = Triangle;
+    const EMPTY: Self = Self::EMPTY;
+
+    fn bound(&mut self, lane: usize, leaf: &Triangle, frame: &Frame) {
+        let (low, high) = leaf.extent(frame);
+        self.set(lane, low, high);
+    }
+
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, line: &Line) -> u32 {
+        meet_boxes(simd, line, self, &mut [0; WIDTH])
+    }
+}
+
+/// A primitive that leaf blocks bound.
+pub(super) trait Blocked: Leaf {
+    type Block: Block<Leaf = Self>;
+    const KIND: Kind;
+
+    /// The primitives of this kind in leaf order, and the place of the first.
+    fn of(leaves: &Leaves) -> &[Self];
+    fn first_place(leaves: &Leaves) -> usize;
+
+    /// The corners of a box in cull coordinates that contains the primitive.
+    fn extent(&self, frame: &Frame) -> ([f32; 3], [f32; 3]);
+
+    /// Some order of all primitives, in which two are equal only if every ray gets the same answer from both.
+    fn order(&self, other: &Self) -> Ordering;
+}
+
+impl Blocked for Sphere {
+    type Block = Balls;
+    const KIND: Kind = Kind::Spheres;
+
+    #[inline(always)]
+    fn of(leaves: &Leaves) -> &[Self] {
+        &leaves.spheres
+    }
+
+    #[inline(always)]
+    fn first_place(_: &Leaves) -> usize {
+        0
+    }
+
+    fn extent(&self, frame: &Frame) -> ([f32; 3], [f32; 3]) {
+        let (center, radius) = (frame.point(self.center()), frame.length(self.radius()));
+        outward(center - radius, center + radius)
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        let numbers = |sphere: &Self| (sphere.center().to_array(), sphere.radius());
+        numbers(self).partial_cmp(&numbers(other)).expect("finite numbers")
+    }
+}
+
+impl Blocked for Triangle {
+    type Block = Boxes;
+    const KIND: Kind = Kind::Triangles;
+
+    #[inline(always)]
+    fn of(leaves: &Leaves) -> &[Self] {
+        &leaves.triangles
+    }
+
+    #[inline(always)]
+    fn first_place(leaves: &Leaves) -> usize {
+        leaves.spheres.len()
+    }
+
+    fn extent(&self, frame: &Frame) -> ([f32; 3], [f32; 3]) {
+        let [a, b, c] = self.vertices().map(|v| frame.point(v));
+        outward(a.min(b).min(c), a.max(b).max(c))
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        let numbers = |triangle: &Self| triangle.vertices().map(|v| v.to_array());
+        numbers(self).partial_cmp(&numbers(other)).expect("finite numbers")
+    }
+}
+
+/// The box between two corners given in cull coordinates, rounded outward.
+fn outward(low: DVec3, high: DVec3) -> ([f32; 3], [f32; 3]) {
+    (low.to_array().map(|x| down(x - COORDINATE_ERROR)), high.to_array().map(|x| up(x + COORDINATE_ERROR)))
+}
+
+/// An inner node: the boxes of its children, because boxes cull better than balls above the leaf blocks
+/// (`benches/peers` measures it).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
@@ -82,12 +189,6 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// The children in use.
-    pub(super) fn children(&self) -> &[Child] {
-        let used = self.boxes.0[0].0.iter().take_while(|low| **low < f32::INFINITY).count();
-        &self.children[..used]
-    }
-
     pub(super) const EMPTY: Self = Self { boxes: Boxes::EMPTY, children: [Child(0); WIDTH] };
 }
 
