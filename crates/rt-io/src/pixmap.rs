@@ -1,7 +1,7 @@
 //! A picture in memory: RGB samples exactly as a file holds them, with the `maxval` that means full intensity.
 //!
-//! Samples stay raw. A picture whose `maxval` fits in a byte keeps one byte a sample, any other two; a grey file's keeps one
-//! sample a pixel, any other three. [`Pixmap::into_stored`] alone shows the difference.
+//! Samples stay raw. A picture whose `maxval` fits in a byte keeps one byte a sample, any other two; a grey file's
+//! keeps one sample a pixel, any other three. [`Pixmap::into_stored`] alone shows the difference.
 
 use std::collections::TryReserveError;
 
@@ -65,8 +65,8 @@ impl Pixmap {
         Self::from_checked(width, height, maxval, samples)
     }
 
-    /// A picture of samples that are known to be at most `maxval` and to have its width; checks the size alone, which tells
-    /// grey from RGB.
+    /// A picture of samples that are known to be at most `maxval` and to have its width; checks the size alone, which
+    /// tells grey from RGB.
     pub(crate) fn from_checked(width: usize, height: usize, maxval: u16, samples: Samples) -> Option<Self> {
         let pixels = width.checked_mul(height)?;
         let found = match &samples {
@@ -129,8 +129,8 @@ impl Pixmap {
         }
     }
 
-    /// The samples as they are stored, which takes no memory: RGB interleaved, row by row from the top, or one a pixel where
-    /// the picture came from a grey file.
+    /// The samples as they are stored, which takes no memory: RGB interleaved, row by row from the top, or one a pixel
+    /// where the picture came from a grey file.
     pub fn into_stored(self) -> Samples {
         self.samples
     }
@@ -193,7 +193,7 @@ fn try_map<A: Copy, B>(samples: &[A], map: impl Fn(A) -> B) -> Result<Vec<B>, Tr
     Ok(result)
 }
 
-/// The sample as a byte; the caller has seen that it is at most 255.
+/// The sample as a byte; the caller has checked that it is at most 255.
 fn low_byte(sample: u16) -> u8 {
     debug_assert!(sample <= 255);
     (sample & 0xff) as u8

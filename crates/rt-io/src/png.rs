@@ -10,11 +10,11 @@ use crate::pixmap::{Pixmap, Samples};
 /// Bytes that the encoder takes besides: a table for matches, rows.
 const SLACK: usize = 1 << 20;
 
-/// Writes an RGB picture, grey if it was read from a grey file, of 8 bits where `maxval <= 255`, else of 16; samples are scaled if `maxval` is not 255 or 65535,
-/// the two that a PNG can have.
+/// Writes an RGB picture, grey if it was read from a grey file, of 8 bits where `maxval <= 255`, else of 16; samples
+/// are scaled if `maxval` is not 255 or 65535, the two that a PNG can have.
 ///
 /// # Errors
-/// Whatever `out` reports, a width or height of 2^31 or more, and too little memory: what is written is gathered first.
+/// An error of `out`, a width or height of 2^31 or more, or too little memory: the output is buffered first.
 ///
 /// ```
 /// use rt_io::{Limits, Pixmap, decode_image, png};
@@ -50,8 +50,8 @@ pub fn write(pixmap: &Pixmap, out: &mut (impl Write + ?Sized)) -> io::Result<()>
             (BitDepth::Sixteen, &pairs)
         }
     };
-    // The encoder gathers what it writes, at most a little more than the samples; the room is asked for, and given back.
-    // Without the black box neither would happen.
+    // The encoder gathers what it writes, at most a little more than the samples; the room is asked for, and given
+    // back. Without the black box neither would happen.
     let mut gathered = Vec::<u8>::new();
     gathered.try_reserve_exact(bytes.len() + bytes.len() / 4 + SLACK)?;
     drop(black_box(gathered));

@@ -1,16 +1,16 @@
 //! Saving a file so that nothing, be it a killed process or a full disk, leaves half of it.
 //!
-//! The bytes go to a temporary file beside the target, reach the disk, and take the target's place in one step, a rename
-//! within one folder. A temporary is called `.NAME.ID.tmp` and is locked by the process that writes it. When that
-//! process dies, the lock goes with it; the next save of the same target finds the temporary unlocked and removes it.
-//! The lock, unlike a process number in the name, also tells the living from the dead between machines that share a
-//! folder. On a file system without locks nobody can tell, and what a dead process left stays.
+//! The bytes go to a temporary file beside the target, reach the disk, and take the target's place in one step, a
+//! rename within one folder. A temporary is called `.NAME.ID.tmp` and is locked by the process that writes it. When
+//! that process dies, the lock goes with it; the next save of the same target finds the temporary unlocked and removes
+//! it. The lock, unlike a process number in the name, also tells live writers from dead ones between machines that
+//! share a folder. On a file system without locks, what a dead process left stays.
 //!
 //! A temporary that will replace a file can be read by its writer alone until its bytes are there; then it gets the old
-//! file's owner and group, and last its mode, because a change of owner clears the bits that run a program as somebody
-//! else. A process without the right to give a file away keeps the group if it is a member of it. What the mode would
-//! then grant to the wrong ones is taken out: to run as the new owner or group, and to the new group whatever was not
-//! granted to everybody.
+//! file's owner and group, and last its mode, because a change of owner clears the setuid and setgid bits. A process
+//! without the right to give a file away keeps the group if it is a member of it. What the mode would then grant to the
+//! wrong ones is taken out: to run as the new owner or group, and to the new group whatever was not granted to
+//! everybody.
 
 #[cfg(unix)]
 use std::fs::Permissions;
@@ -21,56 +21,39 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Why a file was not saved. An existing file is as it was before.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 #[non_exhaustive]
 pub enum SaveError {
     /// The path names a folder.
     #[error("{} is a folder, not a file", path.display())]
-    Folder {
-        /// The path as given.
-        path: PathBuf,
-    },
+    Folder { path: PathBuf },
     /// The folder of the file does not exist.
     #[error("{}: the folder {} does not exist; create it first", path.display(), folder.display())]
-    MissingFolder {
-        /// The path as given.
-        path: PathBuf,
-        /// The folder that is missing.
-        folder: PathBuf,
-    },
+    MissingFolder { path: PathBuf, folder: PathBuf },
     /// The place cannot be written to: no permission, a read-only file or folder, a circle of links.
     #[error("{}: cannot be written", path.display())]
-    Open {
-        /// The path as given.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
+    Open { path: PathBuf, source: io::Error },
     /// Writing failed on the way: a full disk, a closed pipe, or an error of the writing closure itself.
     #[error("{}: writing failed", path.display())]
-    Write {
-        /// The path as given.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
 }
 
 /// Writes the file at `path` by `write`, whole or not at all.
 ///
-/// Until the last moment an existing file stays untouched. The new one keeps its mode, and its owner and group where the
-/// process may give files away; where it may not, the mode never grants more than it did (see below). A file that was not
-/// there gets the mode of any newly created file. A symbolic link is followed, and its target replaced. What is not a
-/// regular file (a pipe, `/dev/stdout`, `/dev/full`) is written directly.
+/// Until the last moment an existing file stays untouched. The new one keeps its mode, and its owner and group where
+/// the process may give files away; where it may not, the mode never grants more than it did (see below). A file that
+/// was not there gets the mode of any newly created file. A symbolic link is followed, and its target replaced. What is
+/// not a regular file (a pipe, `/dev/stdout`, `/dev/full`) is written directly.
 ///
 /// It is another file that takes the name: hard links to the old one keep the old bytes, and access lists, extended
-/// attributes and the time of creation are lost. Where a file had an access list, the bits of its mode for the group are
-/// the most that the list granted to anybody, and the group then has them.
+/// attributes and the time of creation are lost. Where a file had an access list, the bits of its mode for the group
+/// are the most that the list granted to anybody, and the group then has them.
 ///
-/// Where the owner cannot be kept, no program is left that runs as its owner; where the group cannot be, none that runs as
-/// its group, and the new group may do only what everybody may.
+/// Where the owner cannot be kept, no program is left that runs as its owner; where the group cannot be, none that runs
+/// as its group, and the new group may do only what everybody may.
 ///
-/// A process killed inside leaves a temporary file, which the next save of the same path removes. `write` gets a buffered
-/// writer, and need not flush it.
+/// A process killed inside leaves a temporary file, which the next save of the same path removes. `write` gets a
+/// buffered writer, and need not flush it.
 ///
 /// # Errors
 /// [`SaveError`] names the path and the cause; no temporary file is left.
@@ -97,7 +80,7 @@ pub fn save_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Re
     let (target, old) = match resolve(path).map_err(open_error)? {
         Target::Folder => return Err(SaveError::Folder { path: path.to_path_buf() }),
         Target::Device(device) => {
-            // Appending, so that `>> file` behind /dev/stdout keeps what it holds; a pipe has no end to mind.
+            // Appending, so that `>> file` behind /dev/stdout keeps what it holds; for a pipe it makes no difference.
             let mut file = OpenOptions::new().append(true).open(device).map_err(open_error)?;
             return write_all(&mut file, write).map_err(write_error);
         }
@@ -165,7 +148,7 @@ fn keep_access(file: &File, old: &Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// The mode without what it would grant to the wrong ones, if the owner or the group is another.
+/// The mode without what it would grant to others, if the owner or the group has changed.
 #[cfg(unix)]
 fn safe_mode(mode: u32, owner_kept: bool, group_kept: bool) -> u32 {
     let mut mode = mode;
@@ -236,8 +219,8 @@ fn temporary_name(target: &Path) -> String {
     format!(".{}.", &name[..length])
 }
 
-/// Removes the temporaries that begin with `name` and that no living process holds. Whatever fails here is no reason not
-/// to save.
+/// Removes the temporaries that begin with `name` and that no living process holds. A failure here does not prevent
+/// saving.
 fn remove_stale(folder: &Path, name: &str) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
@@ -298,10 +281,10 @@ impl Temporary {
     /// Locks a file that was just created, or gives it up to a clean-up that found it before it was locked.
     fn claim(path: PathBuf, file: File) -> Option<Self> {
         match file.try_lock() {
-            // Nobody removes a locked file; before, somebody may have.
+            // Nobody removes a locked file; a clean-up may have removed it before.
             Ok(()) if path.exists() => {}
             Ok(()) => return None,
-            // Somebody is about to remove it.
+            // A clean-up is about to remove it.
             Err(TryLockError::WouldBlock) => return None,
             // A file system without locks: no clean-up can lock the file either, so none removes it.
             Err(TryLockError::Error(_)) => {}

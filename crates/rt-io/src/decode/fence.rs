@@ -1,7 +1,7 @@
-//! Keeping a panic of a decoder inside: whatever a dependency does with a file, its caller gets an error.
+//! Turns a panic of a decoder into an error.
 //!
-//! A panic is caught where it unwinds. A program built with `panic = "abort"` cannot catch one; the kinds of file on which
-//! the decoders are known to panic are refused before they see them, and what is left ends such a program.
+//! A panic is caught where it unwinds. A program built with `panic = "abort"` cannot catch one; the kinds of file on
+//! which the decoders are known to panic are refused before they see them, and what is left ends such a program.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -10,7 +10,7 @@ use std::sync::Once;
 use std::thread;
 
 thread_local! {
-    /// Whether this thread is inside a fence, so that its panics are nobody's business.
+    /// Whether this thread is inside a fence, so that its panics are not printed.
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -33,7 +33,7 @@ pub(super) fn fenced<T>(work: impl FnOnce() -> T) -> Result<T, String> {
         });
     }
     let outer = INSIDE.replace(true);
-    // All that `work` has begun is dropped with it, so that nobody sees a broken state.
+    // What `work` has built is dropped with it, so that no broken state is visible.
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     INSIDE.set(outer);
     result.map_err(|payload| message(&*payload))

@@ -1,15 +1,16 @@
 //! JPEG: baseline, extended and progressive Huffman coding, 8 bits, grey or three components, through `zune-jpeg`.
 //!
-//! That decoder gives garbage for some samplings, and fills up with zeros whatever a broken file leaves out, in its strict
-//! mode too. So the file is walked through first: what would be decoded wrong is refused by name, and what is left is
-//! handed over with ones behind the data of each scan, which are no Huffman code (T.81, C.2): a decoder that needs more
-//! than there is fails on them. A whole file leaves them unread, like the ones that fill up its last byte (F.1.2.3).
+//! That decoder gives garbage for some samplings, and fills up with zeros what a broken file leaves out, in its
+//! strict mode too. So the file is walked through first: what would be decoded wrong is refused by name, and what is
+//! left is decoded with ones after the data of each scan, which are no Huffman code (T.81, C.2): a decoder that
+//! needs more than there is fails on them. A whole file leaves them unread, like the ones that fill up its last byte
+//! (F.1.2.3).
 //!
-//! Measured against libjpeg-turbo's `djpeg`, samples are at most 3 of 255 off where all components have the same size, and
-//! 4 where some have half the columns or rows, but for two places where the standard leaves the decoder free, and hard
-//! edges made a difference of up to 99: the last column or row, if their number is even and no multiple of 16 (libjpeg
-//! repeats the component's last sample; this decoder takes the one that the encoder has filled its block up with), and
-//! pictures of at most four columns (libjpeg repeats samples there, this decoder goes on to mix neighbours).
+//! Measured against libjpeg-turbo's `djpeg`, samples are at most 3 of 255 off where all components have the same size,
+//! and 4 where some have half the columns or rows, except in two places where the standard leaves the decoder free, and
+//! hard edges made a difference of up to 99: the last column or row, if their number is even and no multiple of 16
+//! (libjpeg repeats the component's last sample; this decoder takes the one that the encoder has filled its block up
+//! with), and pictures of at most four columns (libjpeg repeats samples there, this decoder goes on to mix neighbours).
 //!
 //! Source: ITU-T T.81 (1992); section numbers are its own. T.871 (JFIF) for the colours.
 
@@ -18,8 +19,9 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use crate::Limits;
-use crate::decode::{DecodeError, Decoded, Size};
+use super::dimensions::Dimensions;
+use super::outcome::{DecodeError, Decoded};
+use crate::limits::Limits;
 use crate::pixmap::{Pixmap, Samples};
 
 fn broken(what: impl Into<String>) -> DecodeError {
@@ -32,8 +34,8 @@ fn refuse<T>(what: impl Into<String>) -> Result<T, DecodeError> {
 
 const ENDS: DecodeError = DecodeError::Truncated { format: "JPEG" };
 
-/// Bytes of ones behind the data of a scan or restart interval: more than the 16 bits of the longest code, the 16 bits of
-/// the number behind it, and the 7 that its last byte may lack.
+/// Bytes of ones after the data of a scan or restart interval: more than the 16 bits of the longest code, the 16 bits
+/// of the number after it, and the 7 that its last byte may lack.
 const ONES: usize = 8;
 
 /// Decodes the first picture of a file that begins with a JPEG's marker.
@@ -63,7 +65,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     Ok(Decoded { pixmap: pixmap.ok_or_else(|| broken("no pixels"))?, transparent: false })
 }
 
-/// Fills `samples` from a file whose frame was judged, or says what the decoder does not like.
+/// Fills `samples` from a file whose frame was checked, or returns the error of the decoder.
 fn run(file: &[u8], samples: &mut [u8]) -> Result<(), String> {
     let options =
         DecoderOptions::default().set_strict_mode(true).set_max_width(u16::MAX.into()).set_max_height(u16::MAX.into());
@@ -89,11 +91,11 @@ struct Component {
 }
 
 /// What the frame header says.
-struct Frame {
+struct JpegFrame {
     progressive: bool,
     /// Whether a scan refines coefficients.
     refines: bool,
-    size: Size,
+    size: Dimensions,
     components: Vec<Component>,
     /// Largest sampling factors.
     across: usize,
@@ -103,14 +105,14 @@ struct Frame {
 /// A file that was walked through from segment to segment.
 #[derive(Default)]
 struct Walk {
-    /// Bytes of ones that it gets behind the data of scans and restart intervals.
+    /// Bytes of ones that it gets after the data of scans and restart intervals.
     ones: usize,
-    frame: Option<Frame>,
+    frame: Option<JpegFrame>,
     /// What the decoder gets.
     file: Vec<u8>,
     restart_interval: usize,
     jfif: bool,
-    /// The byte of Adobe's segment that tells the colours.
+    /// The byte of Adobe's segment that states the colour space.
     adobe_transform: Option<u8>,
     scans: usize,
 }
@@ -138,39 +140,15 @@ impl Walk {
             let whole = at - 2..at + length;
             let segment = bytes.get(at + 2..at + length).ok_or(ENDS)?;
             at += length;
-            match marker {
-                0xc0..=0xc2 if walk.frame.is_some() => return Err(broken("a second frame header")),
-                0xc0..=0xc2 => walk.frame = Some(Frame::new(marker == 0xc2, segment, bytes, limits)?),
-                0xc3 => return refuse("lossless coding"),
-                0xc9 | 0xca => return refuse("arithmetic coding"),
-                0xcb => return refuse("lossless arithmetic coding"),
-                0xc5..=0xc7 | 0xcd..=0xcf | 0xde | 0xdf => return refuse("hierarchical coding"),
-                0xdc => return refuse("its height behind the picture"),
-                0xc4 | 0xdb => {}
-                0xdd => {
-                    let &interval = segment.first_chunk().ok_or_else(|| broken("a restart interval"))?;
-                    walk.restart_interval = u16::from_be_bytes(interval).into();
+            if marker == 0xda {
+                walk.scan(&bytes[whole], segment, bytes, &mut at)?;
+            } else if walk.segment(marker, segment, bytes, limits)? {
+                walk.file.extend(&bytes[whole]);
+                if let (0xc0..=0xc2, [.., factors, _]) = (marker, &mut walk.file[..])
+                    && segment.get(5) == Some(&1)
+                {
+                    *factors = 0x11; // Grey is its own measure.
                 }
-                0xe0 if segment.starts_with(b"JFIF\0") => {
-                    walk.jfif = true;
-                    continue;
-                }
-                0xee if segment.starts_with(b"Adobe") => {
-                    walk.adobe_transform = segment.get(11).copied();
-                    continue;
-                }
-                0xda => {
-                    walk.scan(&bytes[whole], segment, bytes, &mut at)?;
-                    continue;
-                }
-                // Comments, profiles and the like.
-                _ => continue,
-            }
-            walk.file.extend(&bytes[whole]);
-            if let (0xc0..=0xc2, [.., factors, _]) = (marker, &mut walk.file[..])
-                && segment.get(5) == Some(&1)
-            {
-                *factors = 0x11; // Grey is its own measure.
             }
         }
         let frame = walk.frame.as_ref().ok_or_else(|| broken("no frame header"))?;
@@ -181,7 +159,36 @@ impl Walk {
         Ok(walk)
     }
 
-    /// Takes over a scan, its header and its data; `at` is behind the header.
+    /// Checks a segment other than a scan, and keeps what it says; returns whether the decoder gets it.
+    fn segment(&mut self, marker: u8, segment: &[u8], bytes: &[u8], limits: &Limits) -> Result<bool, DecodeError> {
+        match marker {
+            0xc0..=0xc2 if self.frame.is_some() => return Err(broken("a second frame header")),
+            0xc0..=0xc2 => self.frame = Some(JpegFrame::new(marker == 0xc2, segment, bytes, limits)?),
+            0xc3 => return refuse("lossless coding"),
+            0xc9 | 0xca => return refuse("arithmetic coding"),
+            0xcb => return refuse("lossless arithmetic coding"),
+            0xc5..=0xc7 | 0xcd..=0xcf | 0xde | 0xdf => return refuse("hierarchical coding"),
+            0xdc => return refuse("its height behind the picture"),
+            0xc4 | 0xdb => {}
+            0xdd => {
+                let &interval = segment.first_chunk().ok_or_else(|| broken("a restart interval"))?;
+                self.restart_interval = u16::from_be_bytes(interval).into();
+            }
+            0xe0 if segment.starts_with(b"JFIF\0") => {
+                self.jfif = true;
+                return Ok(false);
+            }
+            0xee if segment.starts_with(b"Adobe") => {
+                self.adobe_transform = segment.get(11).copied();
+                return Ok(false);
+            }
+            // Comments, profiles and the like.
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Copies a scan, its header and its data; `at` is after the header.
     fn scan(&mut self, whole: &[u8], header: &[u8], bytes: &[u8], at: &mut usize) -> Result<(), DecodeError> {
         let frame = self.frame.as_mut().ok_or_else(|| broken("a scan before the frame header"))?;
         let mut units = frame.begin_scan(header)?;
@@ -205,7 +212,7 @@ impl Walk {
         }
         let begin = self.file.len();
         self.file.extend(whole);
-        // In the first scan of a progressive file the decoder wants the marker right behind the data: it gets that scan
+        // In the first scan of a progressive file the decoder needs the marker right after the data: it gets that scan
         // once as it is and once again with ones.
         let mut plain = if self.scans == 0 && frame.progressive && self.ones > 0 { whole.to_vec() } else { Vec::new() };
         self.scans += 1;
@@ -258,8 +265,8 @@ fn data(bytes: &[u8], at: usize) -> Option<&[u8]> {
     Some(&rest[..length])
 }
 
-impl Frame {
-    /// Reads the frame header (B.2.2) and judges it.
+impl JpegFrame {
+    /// Reads and checks the frame header (B.2.2).
     fn new(progressive: bool, segment: &[u8], bytes: &[u8], limits: &Limits) -> Result<Self, DecodeError> {
         let Some((&[precision, h1, h0, w1, w0, count], rest)) = segment.split_first_chunk::<6>() else {
             return Err(broken("a frame header ends early"));
@@ -297,7 +304,7 @@ impl Frame {
             return refuse(format!("sampling {}", list.join(",")));
         }
         // Every block of 8 x 8 samples of the first component takes a bit or more.
-        let size = Size::check("JPEG", width.into(), height.into(), bytes, 8 * 64, limits)?;
+        let size = Dimensions::check("JPEG", width.into(), height.into(), bytes, 8 * 64, limits)?;
         let (across, down) = (components[0].across, components[0].down);
         Ok(Self { progressive, refines: false, size, components, across, down })
     }

@@ -1,18 +1,19 @@
 //! TIFF: the first picture of a file. The `tiff` crate undoes the compression of one strip or tile at a time; what its
 //! samples mean, where they belong and how many of their bits count is decided here.
 //!
-//! What is read: grey (black or white is zero) of 1, 2, 4, 8 and 16 bits, palettes of up to 8, and RGB of 8 and 16 bits,
-//! also with one sample more; in strips or tiles, interleaved or in planes, of either byte order; not compressed or by
-//! LZW, deflate, `PackBits` or fax group 4.
+//! What is read: grey (black or white is zero) of 1, 2, 4, 8 and 16 bits, palettes of up to 8, and RGB of 8 and 16
+//! bits, also with one sample more; in strips or tiles, interleaved or in planes, of either byte order; not compressed
+//! or by LZW, deflate, `PackBits` or fax group 4.
 
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 
 use tiff::TiffError;
 use tiff::decoder::{Decoder, Limits as TiffLimits};
 
+use super::dimensions::{Dimensions, SLACK};
+use super::outcome::{DecodeError, Decoded};
 use super::tiff_directory::{self as tag, Directory};
-use crate::Limits;
-use crate::decode::{DecodeError, Decoded, SLACK, Size};
+use crate::limits::Limits;
 use crate::pixmap::{Pixmap, Samples};
 
 /// What the samples of a picture mean.
@@ -25,7 +26,7 @@ enum Colors {
 }
 
 /// How the samples of a picture are stored.
-struct Layout {
+struct SampleLayout {
     colors: Colors,
     bits: u16,
     /// Of a pixel.
@@ -49,7 +50,7 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     let (width, height) = (number(tag::IMAGE_WIDTH, "width")?, number(tag::IMAGE_LENGTH, "height")?);
     // LZW: twelve bits for at most 3837 bytes, and that only at the end of a table: under 1400 bytes a byte on average,
     // each of eight one-bit pixels. Fax coding can beat this on pages that are blank.
-    let check = |width, height| Size::check("TIFF", width, height, bytes, 8 * 1400, limits);
+    let check = |width, height| Dimensions::check("TIFF", width, height, bytes, 8 * 1400, limits);
     let size = check(width, height)?;
     let (columns, rows) = size.in_memory()?;
 
@@ -58,8 +59,8 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     let tile = if directory.has(tag::TILE_OFFSETS) {
         let tile = (number(tag::TILE_WIDTH, "width of a tile")?, number(tag::TILE_LENGTH, "height of a tile")?);
         check(tile.0, tile.1)?;
-        // The decoder fails on what fills up the last tiles of a row: it may find no end of LZW data there. So it is told of
-        // whole tiles alone. (It panics on planes of tiles only if asked for the whole picture.)
+        // The decoder fails on what fills up the last tiles of a row: it may find no end of LZW data there. So it is
+        // told of whole tiles alone. (It panics on planes of tiles only if asked for the whole picture.)
         let whole = width.checked_next_multiple_of(tile.0);
         patches.push((tag::IMAGE_WIDTH, whole.ok_or_else(|| refuse("tiles that reach too far".to_string()))?));
         Some(tile)
@@ -72,7 +73,21 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
     let (across, down) = (usize::try_from(across), usize::try_from(down));
     let (Ok(across), Ok(down)) = (across, down) else { return Err(size.out_of_memory(u64::MAX)) };
 
-    // One strip or tile of each plane, packed as in the file.
+    let (samples, transparent) = chunks(decoder, &layout, &size, (columns, rows), (across, down))?;
+    let orientation = directory.number(tag::ORIENTATION).unwrap_or(1);
+    let pixmap = upright(&size, samples, columns, rows, orientation)?;
+    Ok(Decoded { pixmap, transparent })
+}
+
+/// Reads all strips or tiles, `across` columns and `down` rows each: the samples, and whether one was not opaque.
+fn chunks(
+    decoder: Decoder<Patched<'_>>,
+    layout: &SampleLayout,
+    size: &Dimensions,
+    (columns, rows): (usize, usize),
+    (across, down): (usize, usize),
+) -> Result<(Samples, bool), DecodeError> {
+    // One of each plane, packed as in the file.
     let (planes, interleaved) = if layout.planar { (layout.samples, 1) } else { (1, layout.samples) };
     let row_bits = across.checked_mul(interleaved * usize::from(layout.bits));
     let chunk_bytes = row_bits.and_then(|bits| bits.div_ceil(8).checked_mul(down));
@@ -93,9 +108,6 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
         16 => Samples::Sixteen(size.filled(count, 0)?),
         _ => Samples::Eight(size.filled(count, 0)?),
     };
-    let full = u16::try_from((1_u32 << layout.bits) - 1).unwrap_or(u16::MAX);
-    // Full intensity of so few bits divides that of 8.
-    let scale = if layout.bits < 8 { 255 / full } else { 1 };
     let mut transparent = false;
     let mut unpacked = vec![Vec::new(); planes];
     let (wide, high) = (columns.div_ceil(across), rows.div_ceil(down));
@@ -110,33 +122,42 @@ pub(super) fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, DecodeErr
             for (packed, row) in packed.iter().zip(&mut unpacked) {
                 unpack(&packed[y * row_bytes..][..row_bytes], layout.bits, row);
             }
-            for x in 0..across.min(columns - left) {
-                let sample = |channel: usize| match &unpacked[..] {
-                    [row] => row[layout.samples * x + channel],
-                    rows => rows[channel][x],
-                };
-                let at = channels * ((top + y) * columns + left + x);
-                match &layout.colors {
-                    Colors::BlackIsZero => set(&mut samples, at, [sample(0) * scale]),
-                    Colors::WhiteIsZero => set(&mut samples, at, [(full - sample(0)) * scale]),
-                    Colors::Rgb => set(&mut samples, at, [0, 1, 2].map(sample)),
-                    Colors::Palette(palette) => {
-                        let color = |channel: usize| palette[channel * (palette.len() / 3) + usize::from(sample(0))];
-                        set(&mut samples, at, [0, 1, 2].map(color));
-                    }
-                }
-                transparent |= layout.has_alpha && sample(layout.samples - 1) != full;
-            }
+            let at = channels * ((top + y) * columns + left);
+            transparent |= put(&mut samples, at, layout, &unpacked, across.min(columns - left));
         }
     }
-    let orientation = directory.number(tag::ORIENTATION).unwrap_or(1);
-    let pixmap = upright(&size, samples, columns, rows, orientation)?;
-    Ok(Decoded { pixmap, transparent })
+    Ok((samples, transparent))
+}
+
+/// Sets the samples from index `at` on to those of the first `count` pixels of a row, given by plane; returns whether one
+/// of the pixels is not opaque.
+fn put(samples: &mut Samples, at: usize, layout: &SampleLayout, row: &[Vec<u16>], count: usize) -> bool {
+    let full = u16::try_from((1_u32 << layout.bits) - 1).unwrap_or(u16::MAX);
+    // Full intensity of so few bits divides that of 8.
+    let scale = if layout.bits < 8 { 255 / full } else { 1 };
+    let mut transparent = false;
+    for x in 0..count {
+        let sample = |channel: usize| match row {
+            [row] => row[layout.samples * x + channel],
+            rows => rows[channel][x],
+        };
+        match &layout.colors {
+            Colors::BlackIsZero => set(samples, at + x, [sample(0) * scale]),
+            Colors::WhiteIsZero => set(samples, at + x, [(full - sample(0)) * scale]),
+            Colors::Rgb => set(samples, at + 3 * x, [0, 1, 2].map(sample)),
+            Colors::Palette(palette) => {
+                let color = |channel: usize| palette[channel * (palette.len() / 3) + usize::from(sample(0))];
+                set(samples, at + 3 * x, [0, 1, 2].map(color));
+            }
+        }
+        transparent |= layout.has_alpha && sample(layout.samples - 1) != full;
+    }
+    transparent
 }
 
 /// The layout of a picture that is read, or the name of what is not. What a directory leaves out has the value that the
 /// format gives it.
-fn layout(directory: &Directory<'_>) -> Result<Layout, String> {
+fn layout(directory: &Directory<'_>) -> Result<SampleLayout, String> {
     let first = |tag, default| match directory.number(tag) {
         None if directory.has(tag) => Err(format!("a tag {tag} of an unusual type")),
         number => Ok(number.unwrap_or(default)),
@@ -182,7 +203,7 @@ fn layout(directory: &Directory<'_>) -> Result<Layout, String> {
     // A sample more is alpha, as most readers have it, unless the file says that it is something else.
     let has_alpha = samples % 2 == 0 && first(tag::EXTRA_SAMPLES, 2)? != 0;
     let planar = samples > 1 && first(tag::PLANAR_CONFIGURATION, 1)? == 2;
-    Ok(Layout { colors, bits, samples: samples as usize, has_alpha, planar })
+    Ok(SampleLayout { colors, bits, samples: samples as usize, has_alpha, planar })
 }
 
 fn palette(directory: &Directory<'_>, colors: usize) -> Result<Vec<u16>, String> {
@@ -241,9 +262,10 @@ fn set<const N: usize>(samples: &mut Samples, at: usize, values: [u16; N]) {
     }
 }
 
-/// A picture of the samples, turned as the tag says (TIFF 6.0, section 8); a number that it does not have turns nothing.
+/// A picture of the samples, turned as the tag says (TIFF 6.0, section 8); a number that it does not have turns
+/// nothing.
 fn upright(
-    size: &Size,
+    size: &Dimensions,
     samples: Samples,
     columns: usize,
     rows: usize,
@@ -261,7 +283,7 @@ fn upright(
 }
 
 fn turned<S: Copy>(
-    size: &Size,
+    size: &Dimensions,
     samples: &[S],
     columns: usize,
     rows: usize,

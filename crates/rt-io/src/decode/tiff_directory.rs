@@ -1,7 +1,7 @@
 //! The tags of a TIFF's first picture: enough to name what is not read, before a decoder sees it.
 //!
-//! Layout (TIFF 6.0, section 2): `II` or `MM` for the byte order, 42, the offset of a directory: a count, and entries of
-//! twelve bytes: tag, type, number of values, and the values themselves or, if they take more than four bytes, their
+//! Layout (TIFF 6.0, section 2): `II` or `MM` for the byte order, 42, the offset of a directory: a count, and entries
+//! of twelve bytes: tag, type, number of values, and the values themselves or, if they take more than four bytes, their
 //! offset.
 
 /// A directory whose entries all lie within the file.
@@ -61,8 +61,8 @@ impl<'a> Directory<'a> {
         self.entry(tag).is_some()
     }
 
-    /// Index of the tag's first value, how many there are, and whether each takes four bytes and not two; `None` unless it
-    /// is there, of 16-bit or 32-bit numbers, and lies within the file.
+    /// Index of the tag's first value, how many there are, and whether each takes four bytes and not two; `None` unless
+    /// it is there, of 16-bit or 32-bit numbers, and lies within the file.
     fn values(&self, tag: u16) -> Option<(usize, usize, bool)> {
         let entry = self.entry(tag)?;
         let is_long = match self.short(entry + 2)? {

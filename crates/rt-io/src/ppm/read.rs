@@ -1,5 +1,5 @@
 //! Reading: every file that the format allows, a named error with its byte offset for every other, and memory in
-//! proportion to the bytes that are there, whatever the header promises.
+//! proportion to the bytes of the file and not to the size in its header.
 //!
 //! Comments run from `#` to a line feed or carriage return, anywhere up to the byte that ends `maxval`, also touching a
 //! number, and anywhere in a plain raster; the byte that ends one is white space. Exactly one white-space byte stands
@@ -9,7 +9,7 @@
 use std::fmt;
 use std::io::{self, Read};
 
-use crate::Limits;
+use crate::limits::Limits;
 use crate::pixmap::{Pixmap, Samples};
 
 /// A number of the format, as error messages name it.
@@ -38,118 +38,48 @@ impl fmt::Display for Field {
 
 /// Why a file is not a picture. Each offset counts bytes from the start of the file, the first being 0.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 #[non_exhaustive]
 pub enum PpmError {
     /// The file does not begin with the magic number of a format that is read.
     #[error("byte 0: expected P3 or P6 (PPM), P2 or P5 (PGM), found {}", magic(.found))]
-    Magic {
-        /// The first bytes, at most two.
-        found: Vec<u8>,
-    },
+    Magic { found: Vec<u8> },
     /// A relative of PPM that is not read: P1, P4 (PBM), P7 (PAM).
     #[error("byte 0: {} is not read; convert it with netpbm: {}", magic(.found), remedy(.found))]
-    Relative {
-        /// The magic number.
-        found: [u8; 2],
-    },
+    Relative { found: [u8; 2] },
     /// The file ends inside the header.
     #[error("byte {offset}: the file ends before {field}")]
-    HeaderEnds {
-        /// Length of the file.
-        offset: u64,
-        /// The number that is missing.
-        field: Field,
-    },
+    HeaderEnds { offset: u64, field: Field },
     /// Something other than a decimal number: a sign, a letter, a control byte.
     #[error("byte {offset}: expected {field} in decimal digits, found {}", byte(*.found))]
-    NotANumber {
-        /// Where it stands.
-        offset: u64,
-        /// What was expected.
-        field: Field,
-        /// The byte there.
-        found: u8,
-    },
+    NotANumber { offset: u64, field: Field, found: u8 },
     /// Something touches the end of a number: a decimal point, a comma, a letter.
     #[error("byte {offset}: expected white space after {after}, found {}", byte(*.found))]
-    NotSeparated {
-        /// Where it stands.
-        offset: u64,
-        /// What stands before it.
-        after: &'static str,
-        /// The byte there.
-        found: u8,
-    },
+    NotSeparated { offset: u64, after: &'static str, found: u8 },
     /// A number above 4294967295.
     #[error("byte {offset}: {field} must be at most 4294967295")]
-    NumberTooLarge {
-        /// Where its first digit stands.
-        offset: u64,
-        /// Which number.
-        field: Field,
-    },
+    NumberTooLarge { offset: u64, field: Field },
     /// A picture without pixels.
     #[error("byte {offset}: {field} must be at least 1, found 0")]
-    ZeroSize {
-        /// Where the number stands.
-        offset: u64,
-        /// Width or height.
-        field: Field,
-    },
+    ZeroSize { offset: u64, field: Field },
     /// A `maxval` of 0 or above 65535.
     #[error("byte {offset}: maxval must be in 1..=65535, found {found}")]
-    Maxval {
-        /// Where the number stands.
-        offset: u64,
-        /// Its value.
-        found: u32,
-    },
+    Maxval { offset: u64, found: u32 },
     /// More pixels than [`Limits::max_pixels`].
     #[error("byte {offset}: {width} x {height} pixels are more than the limit of {limit}")]
-    TooManyPixels {
-        /// Where the width stands.
-        offset: u64,
-        /// Number of columns.
-        width: u32,
-        /// Number of rows.
-        height: u32,
-        /// The limit that the caller may raise.
-        limit: u64,
-    },
+    TooManyPixels { offset: u64, width: u32, height: u32, limit: u64 },
     /// A sample above `maxval`.
     #[error("byte {offset}: a sample must be at most maxval = {maxval}, found {found}")]
-    SampleAboveMaxval {
-        /// Where the sample stands.
-        offset: u64,
-        /// Its value.
-        found: u32,
-        /// The largest that the header allows.
-        maxval: u16,
-    },
+    SampleAboveMaxval { offset: u64, found: u32, maxval: u16 },
     /// The file ends inside the raster.
     #[error("byte {offset}: the file ends inside the raster: expected {expected} samples, found {found}")]
-    RasterEnds {
-        /// Length of the file.
-        offset: u64,
-        /// Number of samples that the header promises.
-        expected: u64,
-        /// Number of whole samples that are there.
-        found: u64,
-    },
+    RasterEnds { offset: u64, expected: u64, found: u64 },
     /// The operating system has not enough memory for a picture whose bytes are there.
     #[error("not enough memory for {samples} samples; scale the picture down first")]
-    OutOfMemory {
-        /// Number of samples that the header promises.
-        samples: u64,
-    },
+    OutOfMemory { samples: u64 },
     /// Reading failed.
     #[error("byte {offset}: cannot read on")]
-    Read {
-        /// Where reading stopped.
-        offset: u64,
-        /// What the operating system says.
-        source: io::Error,
-    },
+    Read { offset: u64, source: io::Error },
 }
 
 fn byte(found: u8) -> String {
@@ -173,9 +103,9 @@ fn remedy(found: &[u8; 2]) -> &'static str {
 
 /// Reads the picture at the start of a stream whose length is unknown, such as a pipe.
 ///
-/// Memory grows with the bytes that arrive: at most 64 MiB more than the samples take, one byte each where
-/// `maxval <= 255`, else two; grey samples count once. The reader needs no buffer of its own, and may be left
-/// anywhere behind the picture.
+/// Memory grows with the bytes that arrive: at most 64 MiB more than the samples take, one byte each where `maxval <=
+/// 255`, else two; grey samples count once. The reader needs no buffer of its own, and may be left anywhere after the
+/// picture.
 ///
 /// # Errors
 /// [`PpmError`] says what is wrong and at which byte.
@@ -183,7 +113,7 @@ pub fn read(reader: impl Read, limits: &Limits) -> Result<Pixmap, PpmError> {
     read_known(reader, None, limits)
 }
 
-/// Reads as [`read`] does, and gives the comments of the header too, each without its `#` and one blank behind that.
+/// Reads as [`read`] does, and returns the comments of the header too, each without its `#` and one blank after it.
 ///
 /// Bytes that are no UTF-8 are replaced; of more than 64 KiB of comments the rest is left out.
 ///
@@ -222,7 +152,7 @@ pub(crate) fn read_known(reader: impl Read, length: Option<u64>, limits: &Limits
     Ok(Source::new(reader, length).pixmap(limits)?.0)
 }
 
-/// Bytes asked for at a time; small enough to stay in the second-level cache.
+/// Bytes read at a time; small enough to stay in the second-level cache.
 const BUFFER: usize = 1 << 16;
 
 /// Bytes of comments that are kept.
@@ -240,7 +170,7 @@ struct Header {
 }
 
 impl Header {
-    /// Number of samples in the file: `Source::header` has seen that this and three times this do not overflow.
+    /// Number of samples in the file: `Source::header` has checked that this and three times this do not overflow.
     fn samples(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height) * self.channels
     }
@@ -259,7 +189,7 @@ impl Header {
     }
 }
 
-struct Number {
+struct Decimal {
     offset: u64,
     value: u32,
 }
@@ -309,7 +239,7 @@ impl<R: Read> Source<R> {
         Some(self.length?.saturating_sub(self.offset()))
     }
 
-    /// Reads on behind the bytes not yet taken; `false` at the end of the file. The window must not be full.
+    /// Reads more after the bytes not yet used; `false` at the end of the file. The window must not be full.
     fn fill(&mut self) -> Result<bool, PpmError> {
         self.buffer.copy_within(self.start..self.end, 0);
         self.base += self.start as u64;
@@ -383,12 +313,12 @@ impl<R: Read> Source<R> {
         Ok(header)
     }
 
-    fn header_number(&mut self, field: Field) -> Result<Number, PpmError> {
+    fn header_number(&mut self, field: Field) -> Result<Decimal, PpmError> {
         self.number(field)?.ok_or_else(|| PpmError::HeaderEnds { offset: self.offset(), field })
     }
 
-    /// The next number, behind white space and comments, or `None` at the end of the file.
-    fn number(&mut self, field: Field) -> Result<Option<Number>, PpmError> {
+    /// The next number, after white space and comments, or `None` at the end of the file.
+    fn number(&mut self, field: Field) -> Result<Option<Decimal>, PpmError> {
         let first = loop {
             match self.peek()? {
                 None => return Ok(None),
@@ -415,7 +345,7 @@ impl<R: Read> Source<R> {
             Field::Maxval => "maxval",
             Field::Sample => "a sample",
         })?;
-        Ok(Some(Number { offset, value }))
+        Ok(Some(Decimal { offset, value }))
     }
 
     /// Checks that white space, a comment or the end of the file is next.
@@ -459,7 +389,7 @@ impl<R: Read> Source<R> {
             }
 
             // What the fast loop leaves: comments, leading zeros, errors, and the last bytes of the window.
-            let Some(Number { offset, value }) = self.number(Field::Sample)? else {
+            let Some(Decimal { offset, value }) = self.number(Field::Sample)? else {
                 let found = samples.len() as u64;
                 return Err(PpmError::RasterEnds { offset: self.offset(), expected, found });
             };
@@ -475,7 +405,7 @@ impl<R: Read> Source<R> {
     }
 
     /// Takes numbers of at most seven digits, each ended by white space, as long as eight bytes of window are left and
-    /// `samples` has fewer than `end`; stops before anything else. Eight bytes are judged at once, without a branch per
+    /// `samples` has fewer than `end`; stops before anything else. Eight bytes are tested at once, without a branch per
     /// digit.
     fn plain_fast<S>(&mut self, maxval: u16, end: usize, samples: &mut Vec<S>, convert: impl Fn(u16) -> S) {
         let window = &self.buffer[..self.end];
@@ -591,7 +521,8 @@ fn check_maxval<S: Copy + Into<u16>>(samples: &[S], maxval: u16, raster: u64) ->
     Ok(())
 }
 
-/// White space as the format and C's `isspace` have it: blank, tab, line feed, vertical tab, form feed, carriage return.
+/// White space as the format and C's `isspace` have it: blank, tab, line feed, vertical tab, form feed, carriage
+/// return.
 fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t'..=b'\r')
 }

@@ -16,7 +16,7 @@ pub enum Encoding {
 /// Writes the picture with its own `maxval`, in large pieces; `out` needs no buffer of its own.
 ///
 /// # Errors
-/// Whatever `out` reports.
+/// An error of `out`.
 ///
 /// ```
 /// use rt_io::{Pixmap, ppm};
@@ -32,7 +32,7 @@ pub fn write(pixmap: &Pixmap, encoding: Encoding, out: &mut (impl Write + ?Sized
 /// Writes the picture as [`write()`] does, with a second line that holds `comment`.
 ///
 /// # Errors
-/// Whatever `out` reports, and [`io::ErrorKind::InvalidInput`] if the comment holds a line end.
+/// An error of `out`, and [`io::ErrorKind::InvalidInput`] if the comment holds a line end.
 ///
 /// ```
 /// use rt_io::{Limits, Pixmap, ppm};
@@ -56,7 +56,7 @@ pub fn write_with_comment(
     write_lines(pixmap, encoding, &format!("# {comment}\n"), out)
 }
 
-/// Writes the picture with more lines, if any, behind the first.
+/// Writes the picture with more lines, if any, after the first.
 fn write_lines(pixmap: &Pixmap, encoding: Encoding, lines: &str, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let magic = match encoding {
         Encoding::Raw => "P6",
@@ -71,7 +71,8 @@ fn write_lines(pixmap: &Pixmap, encoding: Encoding, lines: &str, out: &mut (impl
     }
 }
 
-/// Hands whole rows of RGB samples on: all at once, or some rows at a time of a picture that is stored as grey.
+/// Passes whole rows of RGB samples to `write`: all at once, or some rows at a time of a picture that is stored as
+/// grey.
 fn in_rgb<S: Copy>(pixmap: &Pixmap, samples: &[S], mut write: impl FnMut(&[S]) -> io::Result<()>) -> io::Result<()> {
     if !pixmap.is_grey() {
         return write(samples);
@@ -100,9 +101,9 @@ fn write_pairs(samples: &[u16], out: &mut (impl Write + ?Sized)) -> io::Result<(
     Ok(())
 }
 
-/// Each number is followed by a space. A line ends after as many whole pixels as netpbm puts on one (what fits in 79 bytes
-/// if a number took one byte less than `maxval` with its space does), and again with the row, so that a row that fills
-/// its last line is followed by an empty one.
+/// Each number is followed by a space. A line ends after as many whole pixels as netpbm puts on one (what fits in 79
+/// bytes if a number took one byte less than `maxval` with its space does), and again with the row, so that a row that
+/// fills its last line is followed by an empty one.
 fn write_plain<S: Copy + Into<u16>>(pixmap: &Pixmap, samples: &[S], out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let digits = pixmap.maxval().ilog10() as usize + 1;
     let fit = 79 / digits;
