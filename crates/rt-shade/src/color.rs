@@ -27,7 +27,8 @@ pub fn clamp(color: DVec3) -> DVec3 {
     DVec3::from_array(color.to_array().map(clamp_channel))
 }
 
-/// Returns the sample that stores the channel `c`: `⌊maxval c + ½⌋` of `c` clamped to `0..=1`, exactly for the double given.
+/// Returns the sample that stores the channel `c`: `⌊maxval c + ½⌋` of `c` clamped to `0..=1`, exactly for the double
+/// given.
 ///
 /// NaN becomes 0, and an infinity the end on its side. For each `maxval`, `to_sample(s / maxval, maxval)` is `s`.
 ///
@@ -41,8 +42,8 @@ pub fn clamp(color: DVec3) -> DVec3 {
 #[inline]
 pub fn to_sample(c: f64, maxval: u16) -> u16 {
     let c = clamp_channel(c);
-    // Two roundings, neither of which passes a half or a whole number: they may lift a sample just below a half onto the
-    // next whole number, and do nothing else.
+    // Two roundings, neither of which passes a half or a whole number: they may lift a sample just below a half onto
+    // the next whole number, and do nothing else.
     let scaled = f64::from(maxval) * c + 0.5;
     #[expect(clippy::cast_possible_truncation, reason = "a cast rounds towards zero: the floor that is wanted")]
     let sample = scaled as u16; // 65535.5 at most
@@ -58,7 +59,8 @@ fn integer_sample(c: f64, maxval: u16) -> u16 {
     let significand = 1 << 63 | bits << 11;
     let shift = 1023 - (bits >> 52);
     let product = u128::from(significand) * u128::from(4 * u64::from(maxval));
-    // Of numbers below 2^18 a shift by 63 leaves 0, as any longer one would: zero and subnormal numbers are among these.
+    // Of numbers below 2^18 a shift by 63 leaves 0, as any longer one would: zero and subnormal numbers are among
+    // these.
     let doubled = (product >> 64) as u64 >> shift.min(63);
     #[expect(clippy::cast_possible_truncation, reason = "c is at most 1, so this is at most maxval")]
     let sample = ((doubled + 1) >> 1) as u16;

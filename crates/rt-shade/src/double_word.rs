@@ -25,11 +25,11 @@ pub(crate) fn split(x: f64) -> (f64, f64) {
     (top, x - top)
 }
 
-/// Returns `a + b` exactly, if `|a| >= |b|` or `a == 0` (Dekker 1971).
+/// Returns `a + b` exactly, if `|a| >= |b|` or `a == 0`.
 #[inline]
 pub(crate) fn fast_two_sum(a: f64, b: f64) -> DoubleWord {
-    let hi = a + b;
-    DoubleWord { hi, lo: b - (hi - a) }
+    let (hi, lo) = rt_math::exact::fast_two_sum(a, b);
+    DoubleWord { hi, lo }
 }
 
 /// Returns `a b` within `2^-76 |a b|`.

@@ -21,6 +21,7 @@ use glam::DVec3;
 
 use crate::arctangent::arctangent_over_pi;
 use crate::double_word::{DoubleWord, fast_two_sum, split};
+use crate::power::power_of_two;
 
 /// Returns the texture coordinates `(u, v)`, each in `0..=1`, of an outward normal of any length.
 ///
@@ -104,8 +105,8 @@ fn latitude(h: Hypotenuse, y: f64) -> f64 {
     count_from(from, sign, angle, correction)
 }
 
-/// Returns `from + share angle + correction`, where `share` is a power of two or its negative: only the last sum
-/// rounds by more than a trifle.
+/// Returns `from + share angle + correction`, where `share` is a power of two or its negative: only the last sum has a
+/// rounding error that counts.
 #[inline]
 fn count_from(from: f64, share: f64, angle: DoubleWord, correction: f64) -> f64 {
     let sum = fast_two_sum(from, share * angle.hi);
@@ -179,7 +180,6 @@ fn normalized(v: f64) -> (f64, i32) {
 
 /// Returns `v 2^e`, rounded once at most, for `e <= 200` and `|v|` in `2^-210 .. 2`, or zero.
 fn scale(v: f64, e: i32) -> f64 {
-    let power_of_two = |e: i32| f64::from_bits(u64::from((e + 1023).unsigned_abs()) << 52);
     if e >= -700 {
         return v * power_of_two(e);
     }

@@ -10,8 +10,8 @@
 //!                                 specular = k_s max(0, <-D|R>)^shininess light
 //! ```
 //!
-//! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything. Both sides,
-//! the eye's and the light's, are decided exactly, since the specular term jumps where the light sets.
+//! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything. Both
+//! sides, the eye's and the light's, are decided exactly, since the specular term jumps where the light sets.
 
 use std::cmp::Ordering;
 
@@ -22,8 +22,8 @@ use rt_math::reflect;
 use crate::color::clamp_channel;
 use crate::power::power;
 
-/// Bound of the error of the cosine between the directions to a light and along a normal, both of which [`unit`] rounds: a
-/// cosine beyond it has the exact sign. `6.1 * 2^-53` is proved in `docs/numerics.md`, section 11.
+/// Bound of the error of the cosine between the directions to a light and along a normal, both of which [`unit`]
+/// rounds: a cosine beyond it has the exact sign. `6.1 * 2^-53` is proved in `docs/numerics.md`, section 11.
 pub(crate) const COSINE_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// How a surface answers light: the coefficients of Phong's terms.
@@ -54,10 +54,10 @@ pub struct PointLight {
 
 /// Returns the colour of a surface point, seen along `direction`, in the light of `lights`.
 ///
-/// `direction` leads from the eye to the point and `normal` is perpendicular to the surface; both may have any
-/// length, and the normal is turned to the side that the ray comes from. `surface` is the surface's own colour.
-/// Each light adds a diffuse and a specular term, both only if it is on the eye's side of the surface; a light in the plane
-/// of the surface or exactly at the point adds nothing. Without lights the result is `surface` itself: a flat picture.
+/// `direction` leads from the eye to the point and `normal` is perpendicular to the surface; both may have any length,
+/// and the normal is turned to the side that the ray comes from. `surface` is the surface's own colour. Each light adds
+/// a diffuse and a specular term, both only if it is on the eye's side of the surface; a light in the plane of the
+/// surface or exactly at the point adds nothing. Without lights the result is `surface` itself: a flat picture.
 ///
 /// On which side of the plane through `point` the eye and each light are is exact for all finite vectors given, however
 /// far or near. The terms themselves are rounded: a light that is on the eye's side by less than rounding may have a
@@ -94,7 +94,7 @@ pub fn phong(
     if lights.is_empty() {
         return surface;
     }
-    // The side is told by the vectors as given: once they are rounded to length 1, a grazing view may change it.
+    // The side is decided by the vectors as given: once they are rounded to length 1, a grazing view may change it.
     let turn = if dot_sign(direction, normal) == Some(Ordering::Greater) { -1.0 } else { 1.0 };
     let given_normal = turn * normal;
     let direction = unit(direction);
@@ -119,7 +119,8 @@ pub fn phong(
     color
 }
 
-/// Tells whether `light` is on the side of the plane through `point` to which `normal` leads, by the vectors as given.
+/// Returns whether `light` is on the side of the plane through `point` to which `normal` leads, by the vectors as
+/// given.
 #[cold]
 #[inline(never)]
 fn is_above(light: DVec3, point: DVec3, normal: DVec3) -> bool {
@@ -308,8 +309,8 @@ mod tests {
         }
     }
 
-    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from the
-    /// other; returns whether the rounded cosine would put it on another side.
+    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from
+    /// the other; returns whether the rounded cosine would put it on another side.
     fn check_side(point: DVec3, light: DVec3, normal: DVec3) -> bool {
         use crate::phong_batch::{SurfacePoint, phong_batch};
         use crate::reference::exact;

@@ -1,9 +1,9 @@
 //! Phong's model for many points at once.
 //!
-//! Points go through the formulas of [`phong`] in groups of [`LANES`], operation by operation, without a branch, so that
-//! the compiler makes vector instructions of them. Every operation rounds as the same one in [`phong`] does, and so the
-//! bits are the same. What is out of the ordinary in a point (a length beyond 1e±100, a side or a rounding that needs
-//! exact integers, an odd shininess) makes its colour NaN on the way, and then [`phong`] itself answers.
+//! Points go through the formulas of [`phong`] in groups of [`LANES`], operation by operation, without a branch, so
+//! that the compiler makes vector instructions of them. Every operation rounds as the same one in [`phong`] does, and
+//! so the bits are the same. What is out of the ordinary in a point (a length beyond 1e±100, a side or a rounding that
+//! needs exact integers, an odd shininess) makes its colour NaN on the way, and then [`phong`] itself answers.
 
 use fearless_simd::Level;
 use glam::DVec3;
@@ -37,8 +37,8 @@ impl SurfacePoint<'_> {
     }
 }
 
-/// Writes the colour of each point in the light of `lights`: bit for bit what [`phong`] returns, but that a NaN may be
-/// another NaN.
+/// Writes the colour of each point in the light of `lights`: bit for bit what [`phong`] returns, except that a NaN may
+/// have other bits.
 ///
 /// # Panics
 /// If the slices differ in length.
@@ -64,33 +64,32 @@ pub fn phong_batch(points: &[SurfacePoint], lights: &[PointLight], colors: &mut 
 
 /// [`phong_batch`] with the instructions of a given level; the bits do not depend on it.
 fn shade_at(level: Level, points: &[SurfacePoint], lights: &[PointLight], colors: &mut [DVec3]) {
+    // Compiles the kernel once for each of these levels of x86; elsewhere vector instructions are always there, or
+    // never.
     #[cfg(target_arch = "x86_64")]
-    {
-        use fearless_simd::Simd;
-        if let Some(simd) = level.as_avx512() {
-            return simd.vectorize(
-                #[inline(always)]
-                || kernel::<true>(points, lights, colors),
-            );
-        }
-        if let Some(simd) = level.as_avx2() {
-            return simd.vectorize(
-                #[inline(always)]
-                || kernel::<true>(points, lights, colors),
-            );
-        }
+    macro_rules! compiled_for {
+        ($($as_level:ident)*) => {
+            $(if let Some(simd) = level.$as_level() {
+                return fearless_simd::Simd::vectorize(
+                    simd,
+                    #[inline(always)]
+                    || kernel::<true>(points, lights, colors),
+                );
+            })*
+        };
     }
+    #[cfg(target_arch = "x86_64")]
+    compiled_for!(as_avx512 as_avx2);
     let _ = level;
-    // Elsewhere vector instructions are always there, or never.
     kernel::<{ cfg!(target_arch = "aarch64") }>(points, lights, colors);
 }
 
 /// A number of each point of a group.
-type Lanes = [f64; LANES];
+type EachPoint = [f64; LANES];
 
 /// A vector of each point of a group.
 #[derive(Clone, Copy)]
-struct Vectors([Lanes; 3]);
+struct Vectors([EachPoint; 3]);
 
 impl Vectors {
     #[inline(always)]
@@ -132,7 +131,7 @@ fn kernel<const FMA: bool>(points: &[SurfacePoint], lights: &[PointLight], color
 fn group<const FMA: bool>(points: &[SurfacePoint], lights: &[PointLight]) -> Vectors {
     // The last lanes of a small group repeat its last point.
     let seen = |i: usize| &points[i.min(points.len() - 1)];
-    let number = |number: fn(&Material) -> f64| -> Lanes {
+    let number = |number: fn(&Material) -> f64| -> EachPoint {
         let mut lanes = [0.0; LANES];
         for i in 0..LANES {
             lanes[i] = number(seen(i).material);
@@ -181,7 +180,7 @@ fn group<const FMA: bool>(points: &[SurfacePoint], lights: &[PointLight]) -> Vec
                 let matt = below + scattered[i] * surface.0[axis][i] * light.color[axis];
                 let shiny = matt + mirrored[i] * light.color[axis];
                 let lit = if specular[i] == 0.0 { matt } else { shiny };
-                // As in `phong`, but that NaN passes the comparison and stays.
+                // As in `phong`, except that NaN passes the comparison and stays.
                 color.0[axis][i] = if cosine[i] <= 0.0 { below } else { lit };
             }
         }

@@ -13,9 +13,9 @@ use crate::double_word::{DoubleWord, fast_two_sum, product, quotient};
 
 /// Returns `base` to the power `exponent`, for `base` in `0..=1`, as IEEE 754's `pow`.
 ///
-/// The error is below 0.59 ulp where the result is at least 2^-64, below 0.75 ulp where it is normal, and below 0.88 ulp
-/// where it is subnormal. A power of 1 and a power with the exponent 0 are 1, whatever the other is; else NaN
-/// gives NaN.
+/// The error is below 0.59 ulp where the result is at least 2^-64, below 0.75 ulp where it is normal, and below 0.88
+/// ulp where it is subnormal. A power of 1 and a power with the exponent 0 are 1, whatever the other is; else NaN gives
+/// NaN.
 pub(crate) fn power(base: f64, exponent: f64) -> f64 {
     if base == 1.0 || exponent == 0.0 {
         return 1.0;
@@ -45,8 +45,8 @@ pub(crate) fn ordinary_power(base: f64, exponent: f64) -> f64 {
     if ordinary { power } else { f64::NAN }
 }
 
-/// Returns the logarithm to base 2 of a number strictly between 0 and 1, with a relative error below 2^-65; of any other
-/// number some number.
+/// Returns the logarithm to base 2 of a number strictly between 0 and 1, with a relative error below 2^-65; unspecified
+/// otherwise.
 #[inline(always)]
 fn log2(b: f64) -> DoubleWord {
     /// 2/ln 2: the first 26 bits, the rest, and the sum of the two.
@@ -93,7 +93,7 @@ fn exp2_of_product(s: f64, x: DoubleWord) -> f64 {
     exp2_of_ordinary_product(s, x)
 }
 
-/// Returns 2 to the power `s x`, for a product in -1100..1100; for any other some number.
+/// Returns 2 to the power `s x`, for a product in -1100..1100; unspecified otherwise.
 #[inline(always)]
 fn exp2_of_ordinary_product(s: f64, x: DoubleWord) -> f64 {
     let DoubleWord { hi, lo } = product(s, x.hi);
@@ -118,12 +118,12 @@ fn exp2_of_ordinary_product(s: f64, x: DoubleWord) -> f64 {
 
 /// Returns 2 to the power `e`, for `e` in `-1022..=1023`.
 #[inline(always)]
-fn power_of_two(e: i32) -> f64 {
+pub(crate) fn power_of_two(e: i32) -> f64 {
     f64::from_bits(u64::from((e + 1023).unsigned_abs()) << 52)
 }
 
-/// `log2(k/64)` for `k` in `48..=96` at place `k % 64`, as the nearest double and the nearest double to what is left. Places
-/// 33 to 47 are not used; they are there so that six bits are always a place.
+/// `log2(k/64)` for `k` in `48..=96` at place `k % 64`, as the nearest double and the nearest double to what is left.
+/// Places 33 to 47 are not used; they are there so that six bits are always a place.
 #[rustfmt::skip]
 static LOG2: [(f64, f64); 64] = [
     (0.0, 0.0), (0.02236781302845451, -1.593366605276194e-18),

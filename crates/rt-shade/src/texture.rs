@@ -19,20 +19,20 @@ use crate::color::clamp_channel;
 
 /// A picture that colours a surface: `width` x `height` texels of RGB samples, row 0 at the top.
 ///
-/// Samples are used as they are stored, divided by `maxval`: no gamma. They take a byte each if they are given as bytes,
-/// else two.
+/// Samples are used as they are stored, divided by `maxval`: no gamma. They take a byte each if they are given as
+/// bytes, else two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     width: usize,
     height: usize,
     /// Samples of a texel: 3, or 1 that stands for all three.
     channels: usize,
-    samples: Samples,
+    samples: Texels,
     maxval: u16,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Samples {
+enum Texels {
     Eight(Vec<u8>),
     Sixteen(Vec<u16>),
 }
@@ -45,7 +45,7 @@ impl Texture {
     pub fn new(width: usize, height: usize, samples: Vec<u16>, maxval: u16) -> Option<Self> {
         let channels = channels(width, height, samples.len())?;
         let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
-        valid.then_some(Self { width, height, channels, samples: Samples::Sixteen(samples), maxval })
+        valid.then_some(Self { width, height, channels, samples: Texels::Sixteen(samples), maxval })
     }
 
     /// Returns the texture with samples that are bytes, as [`new`](Self::new) does with larger ones.
@@ -59,7 +59,7 @@ impl Texture {
     pub fn from_bytes(width: usize, height: usize, samples: Vec<u8>, maxval: u8) -> Option<Self> {
         let channels = channels(width, height, samples.len())?;
         let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
-        let (samples, maxval) = (Samples::Eight(samples), maxval.into());
+        let (samples, maxval) = (Texels::Eight(samples), maxval.into());
         valid.then_some(Self { width, height, channels, samples, maxval })
     }
 
@@ -96,13 +96,7 @@ impl Texture {
     /// Coordinates outside `0..=1` are treated as [`texel`](Self::texel) says.
     pub fn nearest(&self, u: f64, v: f64) -> DVec3 {
         let (column, row) = self.texel(u, v);
-        let texel = match (&self.samples, self.channels) {
-            (Samples::Eight(samples), 1) => self.samples_at::<_, 1>(samples, column, row),
-            (Samples::Eight(samples), _) => self.samples_at::<_, 3>(samples, column, row),
-            (Samples::Sixteen(samples), 1) => self.samples_at::<_, 1>(samples, column, row),
-            (Samples::Sixteen(samples), _) => self.samples_at::<_, 3>(samples, column, row),
-        };
-        texel / f64::from(self.maxval)
+        self.samples_at(column, row) / f64::from(self.maxval)
     }
 
     /// Returns the colour at `(u, v)`, interpolated linearly between the four nearest texel centers.
@@ -110,15 +104,6 @@ impl Texture {
     /// Neighbours wrap around in `u` and end at the first and last row in `v`. Coordinates outside `0..=1` are
     /// treated as [`texel`](Self::texel) says. At a texel center it is that texel's colour.
     pub fn bilinear(&self, u: f64, v: f64) -> DVec3 {
-        match (&self.samples, self.channels) {
-            (Samples::Eight(samples), 1) => self.bilinear_in::<_, 1>(samples, u, v),
-            (Samples::Eight(samples), _) => self.bilinear_in::<_, 3>(samples, u, v),
-            (Samples::Sixteen(samples), 1) => self.bilinear_in::<_, 1>(samples, u, v),
-            (Samples::Sixteen(samples), _) => self.bilinear_in::<_, 3>(samples, u, v),
-        }
-    }
-
-    fn bilinear_in<S: Copy + Into<f64>, const CHANNELS: usize>(&self, samples: &[S], u: f64, v: f64) -> DVec3 {
         // Centers lie at half-integers: texel i covers i..i+1. One whole turn is added to stay positive.
         let x = wrap(u) * self.width as f64 + (self.width as f64 - 0.5);
         let y = (clamp_channel(v) * self.height as f64 - 0.5).clamp(0.0, (self.height - 1) as f64);
@@ -126,26 +111,33 @@ impl Texture {
         let (across, down) = (x - x.floor(), y - y.floor());
         let (columns, rows) = ([left % self.width, (left + 1) % self.width], [top, (top + 1).min(self.height - 1)]);
         let [upper, lower] = rows.map(|row| {
-            let [left, right] = columns.map(|column| self.samples_at::<S, CHANNELS>(samples, column, row));
+            let [left, right] = columns.map(|column| self.samples_at(column, row));
             left + (right - left) * across
         });
         (upper + (lower - upper) * down) / f64::from(self.maxval)
     }
 
     /// The three samples of a texel, not yet divided by `maxval`.
-    fn samples_at<S: Copy + Into<f64>, const CHANNELS: usize>(
-        &self,
-        samples: &[S],
-        column: usize,
-        row: usize,
-    ) -> DVec3 {
-        let start = CHANNELS * (row * self.width + column);
-        let texel = &samples[start..start + CHANNELS];
-        DVec3::from_array([0, 1, 2].map(|channel: usize| texel[channel.min(CHANNELS - 1)].into()))
+    #[inline]
+    fn samples_at(&self, column: usize, row: usize) -> DVec3 {
+        let start = self.channels * (row * self.width + column);
+        let places = start..start + self.channels;
+        match &self.samples {
+            Texels::Eight(samples) => color_of(&samples[places]),
+            Texels::Sixteen(samples) => color_of(&samples[places]),
+        }
     }
 }
 
-/// The samples of a texel, if there are so many in all.
+/// The colour of a texel: three samples, or one that stands for all three.
+fn color_of<S: Copy + Into<f64>>(texel: &[S]) -> DVec3 {
+    match *texel {
+        [red, green, blue] => DVec3::new(red.into(), green.into(), blue.into()),
+        _ => DVec3::splat(texel[0].into()),
+    }
+}
+
+/// The number of samples of a texel, from that of the picture; `None` if it fits neither.
 fn channels(width: usize, height: usize, length: usize) -> Option<usize> {
     let texels = width.checked_mul(height).filter(|&texels| texels != 0)?;
     [1, 3].into_iter().find(|&channels| texels.checked_mul(channels) == Some(length))
