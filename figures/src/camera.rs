@@ -40,9 +40,9 @@ pub enum CameraError {
 }
 
 impl Camera {
-    /// Returns the camera for objects that come without one: it looks from the direction `from`, which is not upright, moves so
-    /// that everything is seen, and has a field of view of 28 degrees, so that things far from the middle are hardly
-    /// stretched.
+    /// Returns the camera for objects that come without one: it looks from the direction `from`, which is not upright,
+    /// moves so that everything is seen, and has a field of view of 28 degrees, so that things far from the middle are
+    /// hardly stretched.
     ///
     /// # Panics
     /// If `from` is zero, not finite, or along the y axis.
@@ -82,7 +82,7 @@ impl Camera {
         Self { fit: true, ..self }
     }
 
-    /// Tells whether the camera moves so that everything is seen.
+    /// Returns whether the camera moves so that everything is seen.
     pub fn fits(&self) -> bool {
         self.fit
     }
@@ -93,8 +93,8 @@ impl Camera {
     /// `None` if there are none, or if that place leaves the f64 range.
     ///
     /// The picture's edges are four planes through the eye. Two of them, left and right, make a wedge; pushed against
-    /// the balls from both sides it stands at one place and depth, and so does the wedge of the other two. The eye takes
-    /// its place across from each, and its depth from the one that is farther back.
+    /// the balls from both sides it stands at one place and depth, and so does the wedge of the other two. The eye
+    /// takes its place across from each, and its depth from the one that is farther back.
     pub fn framed(&self, balls: impl Iterator<Item = (DVec3, f64)>, width: u32, height: u32) -> Option<Self> {
         let vertical = self.half_height / 1.1;
         let tangents = [vertical * f64::from(width) / f64::from(height), vertical];
@@ -129,9 +129,9 @@ impl Camera {
 
 /// Returns the tangent of half of an angle in degrees, more than 0 and less than 180; exactly 1 for 90.
 ///
-/// J. H. Lambert's continued fraction, `tan x = x / (1 - x² / (3 - x² / (5 - ...)))`: unlike the system's library it has
-/// the same bits on every platform. Eleven of its terms leave an error below 1e-16 up to 45 degrees; with rounding it is
-/// at most 4 ulp (tested).
+/// J. H. Lambert's continued fraction, `tan x = x / (1 - x² / (3 - x² / (5 - ...)))`: unlike the system's library it
+/// has the same bits on every platform. Eleven of its terms leave an error below 1e-16 up to 45 degrees; with rounding
+/// it is at most 4 ulp (tested).
 fn tangent_of_half(degrees: f64) -> f64 {
     if degrees == 90.0 {
         return 1.0;

@@ -8,19 +8,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
-use crate::generate::{Ball, Rule};
+use crate::generate::{ColoredBall, Rule};
+use crate::options::{Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
 use crate::output::{self, Format, Target};
-use crate::tile::Tile;
 use crate::{convert, draw, generate, memory};
-
-/// The largest number of pixels in a picture: 1.5 GiB of samples.
-const MAX_PIXELS: u64 = 1 << 28;
-/// The largest width and height, so that positions in the grid of samples fit 32 bits.
-const MAX_SIDE: u32 = 1 << 20;
 
 #[derive(Parser)]
 #[command(
@@ -82,7 +77,7 @@ enum Command {
     /// Write a scene made by a rule
     Gen {
         #[command(subcommand)]
-        piece: Piece,
+        piece: SetPiece,
         /// Where to: .xyz, .toml or .obj, or `-` for stdout
         #[arg(short, long, value_name = "FILE|-", default_value = "-", global = true)]
         out: PathBuf,
@@ -105,7 +100,7 @@ enum Command {
 
 /// A scene that is made by a rule.
 #[derive(Subcommand)]
-enum Piece {
+enum SetPiece {
     /// Spheres on spheres: (9^(depth + 1) - 1) / 8 of them, as XYZ or TOML
     Sphereflake {
         /// Generations after the first sphere
@@ -126,85 +121,6 @@ enum Piece {
         #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(3..=20_000))]
         segments: u32,
     },
-}
-
-/// How a picture is drawn and where it goes.
-#[derive(Args, Clone, Debug)]
-pub struct DrawOptions {
-    /// Where to: a .ppm or .png, a folder, or `-` for stdout [default: out/]
-    #[arg(short, long, value_name = "FILE|DIR|-")]
-    pub out: Option<PathBuf>,
-    /// Columns and rows of the picture
-    #[arg(long, value_name = "WxH", default_value = "1024x768")]
-    pub size: PictureSize,
-    /// Threads [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Take N x N samples in each pixel
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub samples: u32,
-    /// The format to write, whatever the name [default: by the ending of FILE, else ppm]
-    #[arg(long)]
-    pub format: Option<Format>,
-    /// Bits per sample
-    #[arg(long, default_value = "8")]
-    pub depth: Depth,
-    /// Draw only band I of N, rows (I-1)H/N to IH/N, for `merge`
-    #[arg(long, value_name = "I/N")]
-    pub tile: Option<Tile>,
-    /// Write no progress and no notes
-    #[arg(long)]
-    pub quiet: bool,
-    /// Write size, rays, hits, seconds and memory to stdout as JSON
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// Columns and rows of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PictureSize {
-    /// Columns, at least 1.
-    pub width: u32,
-    /// Rows, at least 1.
-    pub height: u32,
-}
-
-impl FromStr for PictureSize {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (width, height) = text.split_once('x').ok_or("expected columns x rows, such as 640x480".to_owned())?;
-        let side = |digits: &str| match digits.parse::<u32>() {
-            Ok(side @ 1..=MAX_SIDE) => Ok(side),
-            _ => Err(format!("expected a whole number from 1 to {MAX_SIDE}, found {digits:?}")),
-        };
-        let (width, height) = (side(width)?, side(height)?);
-        if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(format!("expected at most {MAX_PIXELS} pixels"));
-        }
-        Ok(Self { width, height })
-    }
-}
-
-/// Bits per sample of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Depth {
-    /// 8 bits, samples from 0 to 255.
-    #[value(name = "8")]
-    Eight,
-    /// 16 bits, samples from 0 to 65535.
-    #[value(name = "16")]
-    Sixteen,
-}
-
-impl Depth {
-    /// The largest sample.
-    pub fn maxval(self) -> u16 {
-        match self {
-            Self::Eight => 255,
-            Self::Sixteen => 65535,
-        }
-    }
 }
 
 /// One figure or all of them.
@@ -262,7 +178,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
     }
 }
 
-impl Piece {
+impl SetPiece {
     fn write(&self, out: &Path) -> Result<(), Failure> {
         let ending = output::ending(out).unwrap_or_default();
         let (comment, balls) = match *self {
@@ -278,7 +194,7 @@ impl Piece {
                 (format!("sphereflake of depth {depth}"), generate::sphereflake(depth))
             }
             Self::Spheres { rule, count } => {
-                let bytes = u64::from(count) * size_of::<Ball>() as u64;
+                let bytes = u64::from(count) * size_of::<ColoredBall>() as u64;
                 memory::check(bytes, &format!("{count} spheres"), "make fewer of them (--count)")?;
                 let name = rule.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
                 (format!("{count} spheres, {name}"), generate::random(rule, count))

@@ -1,4 +1,4 @@
-//! Converts an image to PPM: takes the place of the report's script.
+//! Converts an image to PPM: replaces the report's script.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::outcome::Failure;
 use crate::output::{Format, Target};
 use crate::{memory, stderr};
 
-/// Reads the image `input`, whatever its format, and writes it to `output`.
+/// Reads the image `input`, in any format that is read, and writes it to `output`.
 ///
 /// Samples keep their depth unless `maxval` says otherwise: 8 bits, or 16 where the image has more. Grey becomes RGB.
 /// Alpha is dropped, with a warning if a sample is not opaque.

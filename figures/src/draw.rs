@@ -1,4 +1,4 @@
-//! Draws scenes into files: loads, builds, traces, writes, and tells what that took.
+//! Draws scenes into files: loads, builds, traces, writes, and reports the time of each.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -12,11 +12,11 @@ use rt_io::Pixmap;
 use serde::Serialize;
 
 use crate::camera::{Size, View};
-use crate::cli::{DrawOptions, PictureSize};
 use crate::figure::Figure;
+use crate::options::{DrawOptions, PictureSize};
 use crate::outcome::{Failure, to_stdout};
 use crate::output::{Destination, Format, Target};
-use crate::render::{self, AHEAD, Renderer};
+use crate::render::{AHEAD, Renderer};
 use crate::scene::Scene;
 use crate::tile::{self, Label};
 use crate::{import, memory, scene_file, stderr};
@@ -24,7 +24,7 @@ use crate::{import, memory, scene_file, stderr};
 /// Work that ends sooner than this shows no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// What `--json` tells about one picture.
+/// What `--json` reports about one picture.
 #[derive(Serialize)]
 struct Account {
     picture: String,
@@ -36,7 +36,7 @@ struct Account {
     rays: u64,
     hits: u64,
     seconds: Seconds,
-    /// The largest amount of memory that the process has held so far; null where the system does not tell.
+    /// The largest amount of memory that the process has held so far; null where the system does not say.
     peak_memory_bytes: Option<u64>,
 }
 
@@ -46,6 +46,16 @@ struct Seconds {
     build: f64,
     trace: f64,
     write: f64,
+}
+
+/// A watch that returns the seconds since it was last asked.
+struct Watch(Instant);
+
+impl Watch {
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        (now - std::mem::replace(&mut self.0, now)).as_secs_f64()
+    }
 }
 
 /// Draws figures; with `folder`, `--out` is a folder.
@@ -95,6 +105,7 @@ fn pool(options: &DrawOptions) -> Result<ThreadPool, Failure> {
     Ok(ThreadPoolBuilder::new().num_threads(options.threads.map_or(0, usize::from)).build()?)
 }
 
+/// Draws one picture: what `load` gives, into the destination's file `name`.
 fn draw(
     name: &str,
     load: impl FnOnce() -> Result<Scene, Failure> + Send,
@@ -102,75 +113,69 @@ fn draw(
     options: &DrawOptions,
     pool: &ThreadPool,
 ) -> Result<(), Failure> {
-    let start = Instant::now();
-    let scene = pool.install(load)?;
-    if !options.quiet {
-        for warning in &scene.warnings {
-            stderr::tell(&format!("warning: {warning}"));
+    let note = |text: &str| {
+        if !options.quiet {
+            stderr::tell(text);
         }
-    }
+    };
+    let mut watch = Watch(Instant::now());
+
+    // Load.
+    let scene = pool.install(load)?;
+    scene.warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
     let (spheres, triangles) = (scene.spheres.len(), scene.triangles.len());
-    let PictureSize { width, height } = options.size;
-    let view = view(&scene, options.size, options.samples)?;
+    let (PictureSize { width, height }, samples) = (options.size, options.samples);
+    let view = view(&scene, options.size, samples)?;
     let rows = options.tile.map_or(0..height, |tile| tile.rows(height));
-    let label = options.tile.map(|_| Label {
-        rows: rows.clone(),
-        width,
-        height,
-        samples: options.samples,
-        scene: scene.fingerprint(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
+    let label = options.tile.map(|_| {
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Label { rows: rows.clone(), width, height, samples, scene: scene.fingerprint(), version }.to_string()
     });
     if rows.is_empty() {
         // More tiles than rows: this one has nothing to do, and its absence leaves no gap.
-        if !options.quiet {
-            stderr::tell(&format!("{name}: this tile has no rows, nothing is written"));
-        }
+        note(&format!("{name}: this tile has no rows, nothing is written"));
         return Ok(());
     }
-    let loaded = Instant::now();
+    let load = watch.lap();
 
+    // Build.
     let renderer = pool.install(|| Renderer::new(scene));
-    let built = Instant::now();
+    let build = watch.lap();
 
-    // Made before the work, so that a folder that cannot be made is told at once.
+    // Trace. The target comes first, so that a folder that cannot be made is reported before the work.
     let name = options.tile.map_or_else(|| name.to_owned(), |tile| format!("{name}-{}", tile.suffix()));
     let target = destination.target(&name)?;
     let (format, maxval, band) = (destination.format(), options.depth.maxval(), rows.len());
     check_memory(width, band, maxval, format)?;
     let progress = Progress::new(band as u64, options.quiet);
-    let render::Rows { samples, rays, hits } =
-        pool.install(|| renderer.rows(&view, rows, maxval, &|rows| progress.advance(rows)));
+    let drawn = pool.install(|| renderer.rows(&view, rows, maxval, &|rows| progress.advance(rows)));
     progress.finish();
-    let traced = Instant::now();
+    let trace = watch.lap();
 
-    let pixmap = Pixmap::new(width as usize, band, maxval, samples)
+    // Write.
+    let pixmap = Pixmap::new(width as usize, band, maxval, drawn.samples)
         .expect("the renderer fills the picture with samples up to maxval");
-    let label = label.map(|label| label.to_string());
     target.write(&pixmap, label.as_deref(), format)?;
-    let written = Instant::now();
+    let seconds = Seconds { load, build, trace, write: watch.lap() };
 
-    if !options.quiet && target != Target::Stdout {
-        let seconds = (written - start).as_secs_f64();
-        stderr::tell(&format!("{}: {width} x {band} in {seconds:.2} s", target.name()));
+    let picture = target.name();
+    if target != Target::Stdout {
+        let total = load + build + trace + seconds.write;
+        note(&format!("{picture}: {width} x {band} in {total:.2} s"));
     }
     if options.json {
+        let (rays, hits, peak_memory_bytes) = (drawn.rays, drawn.hits, peak_memory());
         let account = Account {
-            picture: target.name(),
+            picture,
             width,
             height: band,
-            samples: options.samples,
+            samples,
             spheres,
             triangles,
             rays,
             hits,
-            seconds: Seconds {
-                load: (loaded - start).as_secs_f64(),
-                build: (built - loaded).as_secs_f64(),
-                trace: (traced - built).as_secs_f64(),
-                write: (written - traced).as_secs_f64(),
-            },
-            peak_memory_bytes: peak_memory(),
+            seconds,
+            peak_memory_bytes,
         };
         to_stdout(format!("{}\n", serde_json::to_string(&account)?).as_bytes())?;
     }
@@ -269,7 +274,7 @@ impl Progress {
     }
 }
 
-/// The largest amount of memory that this process has held, in bytes, where the system tells.
+/// The largest amount of memory that this process has held, in bytes, if the system says.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

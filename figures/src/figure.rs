@@ -1,5 +1,6 @@
-//! The six figures of the report: scene files and the image that they need, carried in the program.
+//! The six figures of the report: scene files that are part of the program.
 
+use crate::assets::FIGURE_SCENES;
 use crate::scene::Scene;
 use crate::scene_file::{self, SceneError};
 
@@ -16,12 +17,12 @@ pub struct Figure {
 
 /// The six figures, in order.
 pub const FIGURES: [Figure; 6] = [
-    Figure { number: 1, title: "one sphere, white on black", text: include_str!("../scenes/figure-1.toml") },
-    Figure { number: 2, title: "spheres, the nearest wins", text: include_str!("../scenes/figure-2.toml") },
-    Figure { number: 3, title: "spheres in Phong's light", text: include_str!("../scenes/figure-3.toml") },
-    Figure { number: 4, title: "one triangle in one colour", text: include_str!("../scenes/figure-4.toml") },
-    Figure { number: 5, title: "colours across a triangle", text: include_str!("../scenes/figure-5.toml") },
-    Figure { number: 6, title: "a texture around a sphere", text: include_str!("../scenes/figure-6.toml") },
+    Figure { number: 1, title: "one sphere, white on black", text: FIGURE_SCENES[0] },
+    Figure { number: 2, title: "spheres, the nearest wins", text: FIGURE_SCENES[1] },
+    Figure { number: 3, title: "spheres in Phong's light", text: FIGURE_SCENES[2] },
+    Figure { number: 4, title: "one triangle in one colour", text: FIGURE_SCENES[3] },
+    Figure { number: 5, title: "colours across a triangle", text: FIGURE_SCENES[4] },
+    Figure { number: 6, title: "a texture around a sphere", text: FIGURE_SCENES[5] },
 ];
 
 impl Figure {
@@ -42,9 +43,4 @@ impl Figure {
     pub fn scene(&self) -> Result<Scene, SceneError> {
         scene_file::embedded(self.text, &format!("{}.toml", self.name()))
     }
-}
-
-/// Returns the bytes of the file that a figure's scene names, if it is carried in the program.
-pub fn asset(path: &str) -> Option<&'static [u8]> {
-    (path == "../assets/earth-natural-720x360.png").then_some(include_bytes!("../assets/earth-natural-720x360.png"))
 }

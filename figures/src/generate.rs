@@ -23,7 +23,7 @@ pub enum Rule {
 
 /// A sphere and its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
+pub struct ColoredBall {
     /// Its center.
     pub center: DVec3,
     /// Its radius.
@@ -36,9 +36,9 @@ pub struct Ball {
 ///
 /// # Errors
 /// What `out` reports.
-pub fn write_xyz(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_xyz(balls: &[ColoredBall], comment: &str, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}\n{comment} Properties=pos:R:3:radius:R:1:color:R:3", balls.len())?;
-    for Ball { center, radius, color } in balls {
+    for ColoredBall { center, radius, color } in balls {
         writeln!(
             out,
             "{:.6} {:.6} {:.6} {radius:.7} {:.3} {:.3} {:.3}",
@@ -52,12 +52,12 @@ pub fn write_xyz(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Resu
 ///
 /// # Errors
 /// What `out` reports.
-pub fn write_toml(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_toml(balls: &[ColoredBall], comment: &str, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "# {comment}\n\nbackground = [0.05, 0.06, 0.08]\n\nsphere = [")?;
     // The colours in order, and the place of each.
     let mut colors: Vec<DVec3> = Vec::new();
     let mut places: HashMap<[u64; 3], usize> = HashMap::new();
-    for Ball { center, radius, color } in balls {
+    for ColoredBall { center, radius, color } in balls {
         places.try_reserve(1).map_err(|_| io::ErrorKind::OutOfMemory)?;
         colors.try_reserve(1).map_err(|_| io::ErrorKind::OutOfMemory)?;
         let material = *places.entry(color.to_array().map(f64::to_bits)).or_insert_with(|| {
@@ -86,7 +86,7 @@ pub fn write_toml(balls: &[Ball], comment: &str, out: &mut dyn Write) -> io::Res
 /// `(9^(depth + 1) - 1) / 8` spheres, parents before children.
 ///
 /// Six children stand around the equator, three above, seen from where the parent touches its own parent.
-pub fn sphereflake(depth: u32) -> Vec<Ball> {
+pub fn sphereflake(depth: u32) -> Vec<ColoredBall> {
     let half_root = 0.75_f64.sqrt(); // sin 60 degrees
     let equator = [(1.0, 0.0), (0.5, half_root), (-0.5, half_root), (-1.0, 0.0), (-0.5, -half_root), (0.5, -half_root)];
     let mut directions: Vec<DVec3> = equator.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();
@@ -96,12 +96,13 @@ pub fn sphereflake(depth: u32) -> Vec<Ball> {
         .extend([(half_root, 0.5), (-half_root, 0.5), (0.0, -1.0)].map(|(x, y)| DVec3::new(low * x, low * y, high)));
 
     let mut balls = Vec::with_capacity(flake_spheres(depth));
-    // A sphere and its frame, whose z axis points away from the parent. The root's points up, turned a little to the eye.
+    // A sphere and its frame, whose z axis points away from the parent. The root's points up, turned a little to the
+    // eye.
     let mut level = vec![(DVec3::ZERO, frame(DVec3::new(0.15, 1.0, 0.45).normalize()))];
     let mut radius = 1.0;
     for generation in 0..=depth {
         let color = shade(generation);
-        balls.extend(level.iter().map(|&(center, _)| Ball { center, radius, color }));
+        balls.extend(level.iter().map(|&(center, _)| ColoredBall { center, radius, color }));
         if generation < depth {
             let reach = radius + radius / 3.0;
             let children = |&(center, axes): &(DVec3, DMat3)| {
@@ -124,10 +125,11 @@ fn flake_spheres(depth: u32) -> usize {
     (9_usize.pow(depth + 1) - 1) / 8
 }
 
-/// Bytes of memory that [`sphereflake`] takes: its spheres, and those of the last two generations once more with their frames.
+/// Bytes of memory that [`sphereflake`] takes: its spheres, and those of the last two generations once more with their
+/// frames.
 pub(crate) fn sphereflake_memory(depth: u32) -> u64 {
     let frames = 9_usize.pow(depth) + 9_usize.pow(depth.saturating_sub(1));
-    (flake_spheres(depth) * size_of::<Ball>() + frames * size_of::<(DVec3, DMat3)>()) as u64
+    (flake_spheres(depth) * size_of::<ColoredBall>() + frames * size_of::<(DVec3, DMat3)>()) as u64
 }
 
 /// An orthonormal frame with this z axis, a unit vector.
@@ -151,13 +153,13 @@ fn shade(generation: u32) -> DVec3 {
 }
 
 /// Returns `count` spheres by a rule, in a cube of side 2 around `(0, 0, -3)`.
-pub fn random(rule: Rule, count: u32) -> Vec<Ball> {
+pub fn random(rule: Rule, count: u32) -> Vec<ColoredBall> {
     let mut numbers = SplitMix(0x5EED ^ u64::from(count));
     let n = f64::from(count.max(1));
     let ball = |center: DVec3, radius| {
         // The colour follows the place, so that depth and direction can be seen.
         let color = DVec3::splat(0.55) + 0.4 * (center - DVec3::new(0.0, 0.0, -3.0));
-        Ball { center, radius, color: color.clamp(DVec3::splat(0.1), DVec3::ONE) }
+        ColoredBall { center, radius, color: color.clamp(DVec3::splat(0.1), DVec3::ONE) }
     };
     match rule {
         Rule::Uniform => {
@@ -181,7 +183,7 @@ pub fn random(rule: Rule, count: u32) -> Vec<Ball> {
             let places = (0..side).flat_map(|i| (0..side).flat_map(move |j| (0..side).map(move |k| [i, j, k])));
             let basis = [DVec3::ZERO, DVec3::new(0.5, 0.5, 0.0), DVec3::new(0.5, 0.0, 0.5), DVec3::new(0.0, 0.5, 0.5)];
             let sites = places.flat_map(|place| basis.map(|offset| DVec3::from_array(place.map(f64::from)) + offset));
-            // As many as the sites are, which they do not tell beforehand.
+            // The iterator does not know its length.
             let mut balls = Vec::with_capacity(count as usize);
             balls.extend(sites.take(count as usize).map(|site| {
                 let jitter = 0.1 * DVec3::new(numbers.signed(), numbers.signed(), numbers.signed());
@@ -286,7 +288,7 @@ mod tests {
             for count in [1, 2, 5, 1000] {
                 let balls = random(rule, count);
                 assert_eq!(balls.len(), count as usize, "{rule:?}");
-                let inside = |ball: &Ball| (ball.center + DVec3::new(0.0, 0.0, 3.0)).abs().max_element() <= 1.3;
+                let inside = |ball: &ColoredBall| (ball.center + DVec3::new(0.0, 0.0, 3.0)).abs().max_element() <= 1.3;
                 assert!(balls.iter().all(|ball| inside(ball) && ball.radius > 0.0), "{rule:?} {count}");
             }
         }

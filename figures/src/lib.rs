@@ -16,6 +16,7 @@
 //! # Ok::<(), figures::scene_file::SceneError>(())
 //! ```
 
+mod assets;
 pub mod camera;
 pub mod cli;
 pub mod convert;
@@ -24,11 +25,13 @@ pub mod figure;
 pub mod generate;
 pub mod import;
 mod memory;
+mod options;
 pub mod outcome;
 pub mod output;
 pub mod render;
 pub mod scene;
 pub mod scene_file;
+mod stage;
 pub mod stderr;
 mod text;
 mod texture_file;

@@ -1,11 +1,11 @@
-//! Asks for memory before a large amount of it is needed, so that a lack of it is an error and not the end of the process.
+//! Asks for memory before a large amount of it is needed, so that a lack of it is an error and not the end of the
+//! process.
 
 use crate::outcome::Failure;
 
 /// Checks that the system would give `bytes` more bytes for `what`; `remedy` says how to need less.
 ///
-/// They are given back at once: what is allocated next has them. A system that promises more than it has can still end
-/// the process.
+/// They are freed at once, for the next allocation. A system that overcommits memory can still end the process.
 ///
 /// # Errors
 /// The size, what it is for, and the remedy.

@@ -1,4 +1,4 @@
-//! How a run ends: done, failed, or wrongly used; and stdout, which carries only what was asked for.
+//! How a run ends: done, failed, or wrongly used; and stdout, which carries only the result.
 
 use std::error::Error;
 use std::io::{self, BufWriter, Write};
@@ -8,10 +8,10 @@ use clap::Parser;
 
 use crate::stderr;
 
-/// Why a program ends without having done its work.
+/// Why a program ends without doing its work.
 #[derive(Debug)]
 pub enum Failure {
-    /// It was asked for something that makes no sense.
+    /// The arguments make no sense.
     Usage(String),
     /// Something went wrong; the causes are printed one after the other.
     Failed(Box<dyn Error + Send + Sync>),
@@ -42,8 +42,8 @@ pub fn parsed<Arguments: Parser>() -> Result<Arguments, ExitCode> {
     }
 }
 
-/// Prints the reason of a failure to stderr, and returns the exit code: 0 done (or stdout was closed), 1 failed, 2 wrong
-/// usage.
+/// Prints the reason of a failure to stderr, and returns the exit code: 0 done (or stdout was closed), 1 failed, 2
+/// wrong usage.
 pub fn exit_code(outcome: Result<(), Failure>) -> ExitCode {
     match outcome {
         Ok(()) | Err(Failure::PipeClosed) => ExitCode::SUCCESS,
@@ -55,7 +55,7 @@ pub fn exit_code(outcome: Result<(), Failure>) -> ExitCode {
             let mut message = error.to_string();
             let mut cause = error.source();
             while let Some(error) = cause {
-                // A wrapper whose text is its cause's would only repeat it.
+                // A wrapper's text may end in its cause's already.
                 let text = error.to_string();
                 if !message.ends_with(&text) {
                     message = format!("{message}: {text}");
@@ -75,10 +75,10 @@ pub fn exit_code(outcome: Result<(), Failure>) -> ExitCode {
     }
 }
 
-/// Writes to stdout what was asked for.
+/// Writes the result to stdout.
 ///
 /// # Errors
-/// [`Failure::PipeClosed`] if nobody reads it any more, else the failed write.
+/// [`Failure::PipeClosed`] if stdout was closed, else the failed write.
 pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     stream_to_stdout(|out| out.write_all(bytes))
 }

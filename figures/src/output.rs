@@ -1,4 +1,4 @@
-//! Where a picture goes, and in which format. What a name promises is written, or the name is refused.
+//! Where a picture goes, and in which format. A file's ending is its format; other endings are refused.
 
 use std::fs;
 use std::io::{self, Write};
@@ -45,7 +45,7 @@ impl Format {
         }
     }
 
-    /// Bytes of memory that [`Target::write`] takes for so many samples up to `maxval`, besides the picture itself.
+    /// Bytes of memory that [`Target::write`] takes for this many samples up to `maxval`, besides the picture itself.
     pub(crate) fn memory_to_write(self, samples: u64, maxval: u16) -> u64 {
         match (self, maxval) {
             (Self::Ppm | Self::PpmPlain, _) => 0,
@@ -68,11 +68,10 @@ impl Format {
     }
 }
 
-/// The ending of a file's name, in lower case: what follows its last dot, if it is made of ASCII letters and digits and not
-/// of digits alone.
+/// The ending of a file's name, in lower case: what follows its last dot, if that is made of ASCII letters and digits
+/// and not of digits alone.
 ///
-/// So `run.1` and `step-0.25` have none, and a name is free to hold dots and numbers; `a.jpg`, `a.PNG` and `a.v2` have
-/// one. No list of the world's formats is needed to know that a name promises one.
+/// So `run.1` and `step-0.25` have none; `a.jpg`, `a.PNG` and `a.v2` have one. No list of formats is needed.
 ///
 /// ```
 /// use figures::output::ending;
@@ -88,7 +87,7 @@ pub fn ending(path: &Path) -> Option<String> {
     (plain && letters).then(|| ending.to_ascii_lowercase())
 }
 
-/// Refuses as a new folder what has the name of a file. A slash behind it says that a folder is meant.
+/// Refuses a new folder with a name like a file's. A slash at the end says that a folder is meant.
 ///
 /// # Errors
 /// Wrong usage, with the remedy.
@@ -109,12 +108,12 @@ fn ends_in_slash(path: &Path) -> bool {
 /// Where the pictures of a command go and in which format, known from the command line alone, before any work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Destination {
-    place: Place,
+    place: OutPlace,
     format: Format,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Place {
+enum OutPlace {
     Stdout,
     File(PathBuf),
     Folder(PathBuf),
@@ -127,25 +126,24 @@ impl Destination {
     /// path.
     ///
     /// # Errors
-    /// Wrong usage: no format asked for, and a name that promises one that is not written, or a new folder with a name like a
-    /// file's.
+    /// Wrong usage: no format asked for, and an ending that is not written, or a new folder with a name like a file's.
     pub fn new(out: Option<&Path>, format: Option<Format>, folder: bool) -> Result<Self, Failure> {
         let out = out.unwrap_or(Path::new("out/"));
         let place = if out == Path::new("-") {
-            Place::Stdout
+            OutPlace::Stdout
         } else if folder || ends_in_slash(out) || out.is_dir() {
-            Place::Folder(out.to_owned())
+            OutPlace::Folder(out.to_owned())
         } else {
-            Place::File(out.to_owned())
+            OutPlace::File(out.to_owned())
         };
         let format = match (format, &place) {
             (Some(format), _) => format,
-            (None, Place::File(path)) => Format::of(path)?,
-            (None, Place::Folder(path)) => {
+            (None, OutPlace::File(path)) => Format::of(path)?,
+            (None, OutPlace::Folder(path)) => {
                 check_new_folder(path)?;
                 Format::Ppm
             }
-            (None, Place::Stdout) => Format::Ppm,
+            (None, OutPlace::Stdout) => Format::Ppm,
         };
         Ok(Self { place, format })
     }
@@ -161,9 +159,9 @@ impl Destination {
     /// A folder that cannot be made, named.
     pub fn target(&self, name: &str) -> Result<Target, Failure> {
         match &self.place {
-            Place::Stdout => Ok(Target::Stdout),
-            Place::File(path) => Ok(Target::File(path.clone())),
-            Place::Folder(folder) => {
+            OutPlace::Stdout => Ok(Target::Stdout),
+            OutPlace::File(path) => Ok(Target::File(path.clone())),
+            OutPlace::Folder(folder) => {
                 fs::create_dir_all(folder).map_err(|error| {
                     Failure::Failed(format!("cannot make folder {}: {error}", folder.display()).into())
                 })?;
@@ -208,10 +206,10 @@ impl Target {
         self.write_with(|out| format.write(pixmap, comment, out))
     }
 
-    /// Writes whatever `write` does: a file appears whole or not at all.
+    /// Writes what `write` writes: a file appears whole or not at all.
     ///
     /// # Errors
-    /// What the system says, with the path; [`Failure::PipeClosed`] if nobody reads stdout any more.
+    /// What the system says, with the path; [`Failure::PipeClosed`] if stdout was closed.
     pub fn write_with(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
         match self {
             Self::Stdout => stream_to_stdout(write),

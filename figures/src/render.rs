@@ -4,19 +4,20 @@
 //! the tree together. A pixel's value depends on nothing but its own rays, summed in a fixed order, so the bytes are
 //! the same for any number of threads.
 
+use std::mem::take;
 use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::{Bvh, Hit, Ray, Shape};
 use rt_shade::color::{clamp, interpolate, to_sample};
-use rt_shade::{PointLight, SurfacePoint, phong_batch, texture_uv};
+use rt_shade::{SurfacePoint, phong_batch, texture_uv};
 
 use crate::camera::{Size, View};
-use crate::scene::{COLOR, DEFAULT_MATERIAL, Filter, Look, Paint, Scene};
+use crate::scene::{DEFAULT_MATERIAL, Filter, Look, LookPlace, Paint, Scene};
 
-/// The size of a tile in pixels: its rays are close enough together to visit the same nodes of the tree, and many enough to
-/// be worth a call.
+/// The size of a tile in pixels: its rays are close enough together to visit the same nodes of the tree, and many
+/// enough to be worth a call.
 const TILE_WIDTH: u32 = 32;
 const TILE_HEIGHT: u32 = 8;
 /// The most rays of a tile, so that a thread's workspace is some 20 MB at most: with many samples in a pixel a tile is
@@ -29,13 +30,8 @@ pub const AHEAD: Range<f64> = 0.0..f64::INFINITY;
 /// A scene made ready for rays: its objects in a tree.
 #[derive(Debug)]
 pub struct Renderer {
-    background: DVec3,
-    lights: Vec<PointLight>,
-    looks: Vec<Look>,
-    colors: Vec<DVec3>,
-    sphere_looks: Vec<u32>,
-    triangle_looks: Vec<u32>,
-    vertex_colors: Vec<Option<[DVec3; 3]>>,
+    /// All but its spheres and triangles.
+    scene: Scene,
     tree: Bvh,
 }
 
@@ -52,11 +48,9 @@ pub struct Rows {
 
 impl Renderer {
     /// Builds the tree over the scene's objects.
-    pub fn new(scene: Scene) -> Self {
-        let Scene { background, lights, looks, colors, spheres, triangles, .. } = scene;
-        let Scene { sphere_looks, triangle_looks, vertex_colors, .. } = scene;
-        let tree = Bvh::new(spheres, triangles);
-        Self { background, lights, looks, colors, sphere_looks, triangle_looks, vertex_colors, tree }
+    pub fn new(mut scene: Scene) -> Self {
+        let tree = Bvh::new(take(&mut scene.spheres), take(&mut scene.triangles));
+        Self { scene, tree }
     }
 
     /// Draws the given rows of a picture, samples in `0..=maxval`.
@@ -69,7 +63,7 @@ impl Renderer {
         let mut picture = vec![0; row_length * rows.len()];
         let hits = (rows.clone().into_par_iter().step_by(TILE_HEIGHT as usize))
             .zip(picture.par_chunks_mut(row_length * TILE_HEIGHT as usize))
-            .map_init(Tile::default, |tile, (top, band)| {
+            .map_init(RayTile::default, |tile, (top, band)| {
                 let bottom = rows.end.min(top + TILE_HEIGHT);
                 let mut hits = 0;
                 for left in (0..width).step_by(tile_width as usize) {
@@ -93,7 +87,7 @@ impl Renderer {
 
     /// The colour that a ray brings back.
     pub fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
-        hit.map_or(self.background, |hit| self.seen(ray, hit).shaded(&self.lights))
+        hit.map_or(self.scene.background, |hit| self.seen(ray, hit).shaded(&self.scene.lights))
     }
 
     /// The point that a ray hits.
@@ -102,22 +96,22 @@ impl Renderer {
         let (point, direction) = (ray.at(t), ray.direction());
         match self.tree.shape(index) {
             Shape::Sphere(sphere) => {
-                // A sphere of radius 0 faces whoever looks at it.
+                // A sphere of radius 0 faces the eye.
                 let normal = if sphere.radius() > 0.0 { sphere.normal(point) } else { -direction };
-                let look = self.sphere_looks[index];
-                let (surface, material) = match look.checked_sub(COLOR) {
-                    Some(position) => (self.colors[position as usize], &DEFAULT_MATERIAL),
-                    None => {
-                        let Look { paint, material } = &self.looks[look as usize];
+                let (surface, material) = match self.scene.sphere_looks[index].place() {
+                    LookPlace::Color(at) => (self.scene.colors[at], &DEFAULT_MATERIAL),
+                    LookPlace::Look(at) => {
+                        let Look { paint, material } = &self.scene.looks[at];
                         (paint_at(paint, normal), material)
                     }
                 };
                 SurfacePoint { point, direction, normal, surface, material }
             }
             Shape::Triangle(triangle) => {
-                let index = index - self.sphere_looks.len();
-                let Look { paint, material } = &self.looks[self.triangle_looks[index] as usize];
-                let colors = self.vertex_colors.get(index).and_then(Option::as_ref);
+                let index = index - self.scene.sphere_looks.len();
+                let look = self.scene.look(self.scene.triangle_looks[index]);
+                let Look { paint, material } = look.expect("a triangle has a look");
+                let colors = self.scene.vertex_colors.get(index).and_then(Option::as_ref);
                 let surface = match (colors, paint) {
                     (Some(colors), _) => {
                         triangle.hit_barycentric(ray).map_or(colors[0], |weights| interpolate(colors, weights))
@@ -148,7 +142,7 @@ fn paint_at(paint: &Paint, normal: DVec3) -> DVec3 {
 
 /// A thread's workspace for the rays of one tile.
 #[derive(Default)]
-struct Tile<'a> {
+struct RayTile<'a> {
     /// The directions to the columns of samples, and what to add to them for the rows.
     across: Vec<DVec3>,
     down: Vec<DVec3>,
@@ -161,7 +155,7 @@ struct Tile<'a> {
     pixels: Vec<DVec3>,
 }
 
-impl<'a> Tile<'a> {
+impl<'a> RayTile<'a> {
     /// Finds the colours of a tile's pixels and returns how many rays hit something.
     fn trace(&mut self, renderer: &'a Renderer, view: &View, columns: Range<u32>, rows: Range<u32>) -> u64 {
         let samples = view.size().samples;
@@ -185,13 +179,13 @@ impl<'a> Tile<'a> {
         let met = self.rays.iter().zip(&self.hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
         self.seen.extend(met.map(|(ray, hit)| renderer.seen(ray, hit)));
         self.colors.resize(self.seen.len(), DVec3::ZERO);
-        phong_batch(&self.seen, &renderer.lights, &mut self.colors);
+        phong_batch(&self.seen, &renderer.scene.lights, &mut self.colors);
 
         // Each sample is clamped before the mean, so that one bright highlight does not outshine its pixel.
         self.pixels.clear();
         let mut colors = self.colors.iter();
         let mut color = |hit: &Option<Hit>| {
-            clamp(if hit.is_some() { *colors.next().expect("one for each hit") } else { renderer.background })
+            clamp(if hit.is_some() { *colors.next().expect("one for each hit") } else { renderer.scene.background })
         };
         for hits in self.hits.chunks_exact((samples * samples) as usize) {
             let sum: DVec3 = hits.iter().map(&mut color).sum();

@@ -1,4 +1,4 @@
-//! Text from other hands: marks at the start of what is read, and control characters in what is told about it.
+//! Text from outside: byte-order marks at its start, and control characters in messages that quote it.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 /// A file in UTF-16, known by its byte-order mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("UTF-16 text; save it as UTF-8")]
-pub struct Utf16;
+pub(crate) struct Utf16;
 
 /// Returns a file without the byte-order mark that it may start with.
 ///
@@ -20,8 +20,8 @@ pub(crate) fn without_mark(start: &[u8]) -> Result<&[u8], Utf16> {
     }
 }
 
-/// Returns a text as it may go to a terminal: control characters, and those that turn the direction of writing, are escaped
-/// as Rust escapes them.
+/// Returns a text that is safe to print on a terminal: control characters, and those that change the direction of
+/// writing, are escaped as Rust escapes them.
 pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
     let turns =
         |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
@@ -33,7 +33,7 @@ pub(crate) fn escaped(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(escape).collect())
 }
 
-/// Returns how a message calls a file.
+/// Returns a file's name for a message.
 pub(crate) fn file_name(path: &Path) -> String {
     escaped(&path.to_string_lossy()).into_owned()
 }
@@ -57,42 +57,17 @@ pub(crate) fn quoted(name: &str) -> String {
     }
 }
 
-/// Returns the name that was probably meant: the first of those with the fewest slips, and at most one slip for every two
-/// letters. A slip is a letter too many, missing, wrong, or swapped with the next.
+/// Returns the name that was probably meant: the first of those with the fewest slips, at most one for every two
+/// letters.
+///
+/// A slip is a letter too many, missing, wrong, or swapped with the next (the restricted Damerau distance). Names of
+/// more than 40 letters are not compared.
 pub(crate) fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let letters: Vec<char> = name.chars().take(LONGEST + 1).collect();
-    let most = letters.len() / 2;
-    if letters.len() > LONGEST {
-        return None;
-    }
-    let slips = known.filter_map(|known| Some((slips(&letters, known)?, known)));
+    let is_short = |name: &str| name.chars().nth(40).is_none();
+    let most = name.chars().count() / 2;
+    let known = known.filter(|known| is_short(name) && is_short(known));
+    let slips = known.map(|known| (strsim::osa_distance(name, known), known));
     slips.filter(|&(slips, _)| slips <= most).min_by_key(|&(slips, _)| slips).map(|(_, known)| known)
-}
-
-/// Names longer than this are not compared.
-const LONGEST: usize = 40;
-
-/// The number of slips between two names, by the table of their beginnings (the restricted Damerau distance).
-fn slips(name: &[char], known: &str) -> Option<usize> {
-    let known: Vec<char> = known.chars().take(LONGEST + 1).collect();
-    if known.len() > LONGEST || known.len().abs_diff(name.len()) > name.len() / 2 {
-        return None;
-    }
-    let mut rows = [[0; LONGEST + 1]; 3];
-    for i in 0..=name.len() {
-        rows.rotate_right(1);
-        for j in 0..=known.len() {
-            rows[0][j] = if i == 0 || j == 0 {
-                i + j
-            } else {
-                let wrong = rows[1][j - 1] + usize::from(name[i - 1] != known[j - 1]);
-                let least = wrong.min(rows[1][j] + 1).min(rows[0][j - 1] + 1);
-                let swapped = i > 1 && j > 1 && name[i - 1] == known[j - 2] && name[i - 2] == known[j - 1];
-                if swapped { least.min(rows[2][j - 2] + 1) } else { least }
-            };
-        }
-    }
-    Some(rows[0][known.len()])
 }
 
 #[cfg(test)]
@@ -109,8 +84,12 @@ mod tests {
 
     #[test]
     fn control_characters_are_escaped_and_nothing_else() {
-        assert_eq!(escaped("a\u{1b}[31m\n\u{202e}b\u{7f}\u{9b}"), "a\\u{1b}[31m\\n\\u{202e}b\\u{7f}\\u{9b}");
-        assert_eq!(escaped("Ångström \\ é.xyz"), "Ångström \\ é.xyz");
+        assert_eq!(escaped("\u{1b}[2J\r\n\t\0\u{7f}\u{9b}1A\u{202e}"), r"\u{1b}[2J\r\n\t\u{0}\u{7f}\u{9b}1A\u{202e}");
+        // Text in any script stays, and so does a quote or a backslash.
+        let plain = r#"Größe 大きさ "a\b" × ½"#;
+        assert_eq!(escaped(plain), plain);
+        let all: String = (0..=0x0010_ffff_u32).filter_map(char::from_u32).collect();
+        assert!(!escaped(&all).contains(char::is_control));
     }
 
     #[test]

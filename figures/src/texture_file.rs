@@ -1,4 +1,4 @@
-//! Textures from image files: PPM, PNG, JPEG or TIFF, told apart by their content.
+//! Textures from image files: PPM, PNG, JPEG or TIFF, recognised by their content.
 
 use std::path::Path;
 

@@ -1,7 +1,8 @@
-//! Bands of a picture, for job arrays: which rows a tile has, what its file says about itself, and how tiles are joined.
+//! Bands of a picture, for job arrays: which rows a tile has, what its file says about itself, and how tiles are
+//! joined.
 //!
-//! Tile `i` of `n` has the rows from `⌊(i − 1) H / n⌋` up to `⌊i H / n⌋`. Its file is a PPM of these rows, with one comment
-//! line that tells where they belong. Joined, the rows are byte for byte those of the picture drawn in one go.
+//! Tile `i` of `n` has the rows from `⌊(i − 1) H / n⌋` up to `⌊i H / n⌋`. Its file is a PPM of these rows, with one
+//! comment line that says where they belong. Joined, the rows are byte for byte those of the picture drawn in one go.
 
 use std::fmt;
 use std::fs::File;
@@ -98,13 +99,13 @@ impl Label {
 }
 
 /// A tile that was read.
-struct Part {
+struct TileFile {
     path: PathBuf,
     label: Label,
     pixmap: Pixmap,
 }
 
-impl Part {
+impl TileFile {
     /// What tiles of one picture have in common, each with its name.
     fn common(&self) -> [(&'static str, String); 5] {
         let Label { width, height, samples, scene, version, .. } = &self.label;
@@ -120,75 +121,28 @@ impl Part {
 
 /// Why tiles cannot be joined.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MergeError {
-    /// A file could not be opened.
+#[error(transparent)]
+pub struct MergeError(#[from] Obstacle);
+
+/// What is in the way of joining tiles; the `first` file is the one that another is compared with.
+#[derive(Debug, thiserror::Error)]
+enum Obstacle {
     #[error("cannot read {}", path.display())]
-    Open {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A file is not a PPM.
+    Open { path: PathBuf, source: io::Error },
     #[error("{}: {source}", path.display())]
-    Ppm {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: PpmError,
-    },
-    /// A file has no label, or its pixels are not what the label says.
+    Ppm { path: PathBuf, source: PpmError },
     #[error("{}: not a tile: {what}", path.display())]
-    NoTile {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        what: &'static str,
-    },
-    /// A tile of something else.
+    NoTile { path: PathBuf, what: &'static str },
     #[error("{}: a tile of another picture: {what} {found}, but {expected} in {}", path.display(), first.display())]
-    Stranger {
-        /// The file.
-        path: PathBuf,
-        /// The file that it is compared with.
-        first: PathBuf,
-        /// In what they differ.
-        what: &'static str,
-        /// As it is in this file.
-        found: String,
-        /// As it is in the first.
-        expected: String,
-    },
-    /// No files at all.
+    Stranger { path: PathBuf, first: PathBuf, what: &'static str, found: String, expected: String },
     #[error("no tiles")]
     Nothing,
-    /// Rows that no tile has.
     #[error("rows {}..{} are missing", rows.start, rows.end)]
-    Gap {
-        /// The rows.
-        rows: Range<u32>,
-    },
-    /// The picture is larger than the memory.
+    Gap { rows: Range<u32> },
     #[error("cannot get {megabytes} MB of memory for {width} x {height} pixels; pnmcat -tb joins tiles in less")]
-    Memory {
-        /// What the joined samples take, in units of 10^6 bytes.
-        megabytes: u64,
-        /// Columns of the picture.
-        width: u32,
-        /// Rows of the picture.
-        height: u32,
-    },
-    /// Rows that two tiles have.
+    Memory { megabytes: u64, width: u32, height: u32 },
     #[error("rows {}..{} are in {} and in {}", rows.start, rows.end, first.display(), second.display())]
-    Overlap {
-        /// The rows.
-        rows: Range<u32>,
-        /// One file that has them.
-        first: PathBuf,
-        /// The other one.
-        second: PathBuf,
-    },
+    Overlap { rows: Range<u32>, first: PathBuf, second: PathBuf },
 }
 
 /// Joins the tiles in these files, in any order, to the whole picture.
@@ -199,12 +153,12 @@ pub enum MergeError {
 #[expect(clippy::missing_panics_doc, reason = "the rows are checked to be all there")]
 pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
     let mut parts = paths.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?;
-    let Some(first) = parts.first() else { return Err(MergeError::Nothing) };
+    let Some(first) = parts.first() else { return Err(Obstacle::Nothing.into()) };
     for part in &parts[1..] {
         let mut pairs = part.common().into_iter().zip(first.common());
         if let Some(((what, found), (_, expected))) = pairs.find(|((_, found), (_, expected))| found != expected) {
             let (path, first) = (part.path.clone(), first.path.clone());
-            return Err(MergeError::Stranger { path, first, what, found, expected });
+            return Err(Obstacle::Stranger { path, first, what, found, expected }.into());
         }
     }
     let (width, height, maxval) = (first.label.width, first.label.height, first.pixmap.maxval());
@@ -215,18 +169,18 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
         if start < end {
             let (rows, first, second) =
                 (start..end.min(second.label.rows.end), first.path.clone(), second.path.clone());
-            return Err(MergeError::Overlap { rows, first, second });
+            return Err(Obstacle::Overlap { rows, first, second }.into());
         }
     }
     let ends = [0].into_iter().chain(parts.iter().map(|part| part.label.rows.end));
     let starts = parts.iter().map(|part| part.label.rows.start).chain([height]);
     if let Some((end, start)) = ends.zip(starts).find(|(end, start)| end < start) {
-        return Err(MergeError::Gap { rows: end..start });
+        return Err(Obstacle::Gap { rows: end..start }.into());
     }
     let count = 3 * u64::from(width) * u64::from(height);
     let mut samples = Vec::new();
     if !usize::try_from(count).is_ok_and(|count| samples.try_reserve_exact(count).is_ok()) {
-        return Err(MergeError::Memory { megabytes: (2 * count).div_ceil(1_000_000), width, height });
+        return Err(Obstacle::Memory { megabytes: (2 * count).div_ceil(1_000_000), width, height }.into());
     }
     for part in parts {
         samples.extend(part.pixmap.into_samples());
@@ -235,17 +189,17 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
 }
 
 /// Reads a tile.
-fn read(path: &Path) -> Result<Part, MergeError> {
-    let file = File::open(path).map_err(|source| MergeError::Open { path: path.to_owned(), source })?;
+fn read(path: &Path) -> Result<TileFile, Obstacle> {
+    let file = File::open(path).map_err(|source| Obstacle::Open { path: path.to_owned(), source })?;
     let read = ppm::read_with_comments(BufReader::new(file), &Limits::default());
-    let (pixmap, comments) = read.map_err(|source| MergeError::Ppm { path: path.to_owned(), source })?;
-    let refuse = |what| MergeError::NoTile { path: path.to_owned(), what };
+    let (pixmap, comments) = read.map_err(|source| Obstacle::Ppm { path: path.to_owned(), source })?;
+    let refuse = |what| Obstacle::NoTile { path: path.to_owned(), what };
     let label = comments.iter().find_map(|comment| Label::parse(comment));
     let label = label.ok_or_else(|| refuse("no comment says which rows it has"))?;
     if pixmap.width() != label.width as usize || pixmap.height() != label.rows.len() {
         return Err(refuse("its size is not what its comment says"));
     }
-    Ok(Part { path: path.to_owned(), label, pixmap })
+    Ok(TileFile { path: path.to_owned(), label, pixmap })
 }
 
 #[cfg(test)]

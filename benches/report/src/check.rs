@@ -3,8 +3,8 @@
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
-use super::Report;
 use super::measure::Time;
+use super::results::Report;
 
 /// Returns one line for each difference: any in the errors, and times that differ by more than `factor`, if given.
 pub(super) fn differences(stored: &Report, new: &Report, factor: Option<f64>) -> Vec<String> {

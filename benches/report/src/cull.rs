@@ -10,22 +10,23 @@ use rayon::prelude::*;
 use rt_geom::{Ray, Sphere};
 
 use super::measure::{Cell, Effort, Errors, Kernel, Measured, hexadecimal, take_turns};
-use super::methods::real::{Real, Vector, dot, dvec3};
+use super::methods::real::{Components, Float, dot, dvec3};
+use super::progress::progress;
 use super::random::{Random, cross, length, plus, size};
-use super::{progress, reference};
+use super::reference;
 
 /// Balls that are culled together.
 const WIDTH: usize = 16;
 
 /// A ray and sixteen balls in the unit ball.
-struct Case {
+struct CullCase {
     /// Origin and direction.
     ray: [f64; 6],
     /// Centers and radii.
     balls: [[f64; 4]; WIDTH],
 }
 
-impl Case {
+impl CullCase {
     /// The ray and one ball, as the kernel of rays and spheres has it.
     fn with_ball(&self, ball: &[f64; 4]) -> [f64; 10] {
         let numbers = [&self.ray[..], ball].concat();
@@ -34,66 +35,41 @@ impl Case {
 }
 
 /// Writes for each case which balls are kept, as bits.
-type Run<'a> = Box<dyn Fn(&mut [u16]) + 'a>;
+type CullRun<'a> = Box<dyn Fn(&mut [u16]) + 'a>;
 
 /// A cull and what it makes of a list of cases before time is taken.
-struct Method {
+struct CullMethod {
     name: &'static str,
     source: &'static str,
     ours: bool,
-    prepare: fn(&[Case]) -> Run<'_>,
+    prepare: fn(&[CullCase]) -> CullRun<'_>,
 }
 
-const METHODS: [Method; 6] = [
-    Method {
-        name: "f32, no margin",
-        source: "distance to the segment, rounding ignored",
-        ours: false,
-        prepare: |cases| balls::<f32>(cases, 0.0),
-    },
-    Method {
-        name: "f32, the tree's margin",
-        source: "the tree's leaf blocks: 64 half-ulps",
-        ours: true,
-        prepare: |cases| balls::<f32>(cases, 64.0),
-    },
-    Method {
-        name: "f32, margin × 16",
-        source: "the same, 1024 half-ulps",
-        ours: false,
-        prepare: |cases| balls::<f32>(cases, 1024.0),
-    },
-    Method {
-        name: "f32, boxes",
-        source: "the tree's nodes: Kay and Kajiya's slabs, margin of 8 half-ulps",
-        ours: true,
-        prepare: boxes,
-    },
-    Method {
-        name: "f64, margin",
-        source: "distance to the segment, 64 half-ulps",
-        ours: false,
-        prepare: |cases| balls::<f64>(cases, 64.0),
-    },
-    Method { name: "exact test", source: "the kernel for spheres, no cull", ours: true, prepare: exact_test },
+const fn method(
+    name: &'static str,
+    source: &'static str,
+    ours: bool,
+    prepare: fn(&[CullCase]) -> CullRun<'_>,
+) -> CullMethod {
+    CullMethod { name, source, ours, prepare }
+}
+
+const METHODS: [CullMethod; 6] = [
+    method("f32, no margin", "distance to the segment, rounding ignored", false, |cases| balls::<f32>(cases, 0.0)),
+    method("f32, the tree's margin", "the tree's leaf blocks: 64 half-ulps", true, |cases| balls::<f32>(cases, 64.0)),
+    method("f32, margin × 16", "the same, 1024 half-ulps", false, |cases| balls::<f32>(cases, 1024.0)),
+    method("f32, boxes", "the tree's nodes: Kay and Kajiya's slabs, margin of 8 half-ulps", true, boxes),
+    method("f64, margin", "distance to the segment, 64 half-ulps", false, |cases| balls::<f64>(cases, 64.0)),
+    method("exact test", "the kernel for spheres, no cull", true, exact_test),
 ];
 
 /// Measures the culls.
 pub(super) fn cull(effort: Effort) -> Kernel {
     progress("cull of a bounding volume");
-    let mut measured: Vec<Measured> = METHODS
-        .iter()
-        .map(|method| Measured {
-            name: method.name.to_owned(),
-            source: method.source.to_owned(),
-            ours: method.ours,
-            has_values: false,
-            classes: Vec::new(),
-        })
-        .collect();
+    let mut measured = METHODS.each_ref().map(|method| Measured::new(method.name, method.source, method.ours, false));
     for (name, cases) in classes(effort.cases.div_ceil(4)) {
         let truths: Vec<u16> = cases.par_iter().map(truth).collect();
-        let runs: Vec<Run> = METHODS.iter().map(|method| (method.prepare)(&cases)).collect();
+        let runs: Vec<CullRun> = METHODS.iter().map(|method| (method.prepare)(&cases)).collect();
         let mut kept = vec![0; cases.len()];
         let time = |i: usize| {
             runs[i](&mut kept);
@@ -111,12 +87,12 @@ pub(super) fn cull(effort: Effort) -> Kernel {
         verdict: Some("kept or dropped".to_owned()),
         values: None,
         one_sided: true,
-        methods: measured,
+        methods: measured.into(),
     }
 }
 
 /// The balls that the ray meets.
-fn truth(case: &Case) -> u16 {
+fn truth(case: &CullCase) -> u16 {
     bits(|lane| reference::sphere(&case.with_ball(&case.balls[lane])).verdict == 1)
 }
 
@@ -124,7 +100,7 @@ fn bits(is_set: impl Fn(usize) -> bool) -> u16 {
     (0..WIDTH).fold(0, |bits, lane| bits | u16::from(is_set(lane)) << lane)
 }
 
-fn errors(cases: &[Case], truths: &[u16], kept: &[u16]) -> Errors {
+fn errors(cases: &[CullCase], truths: &[u16], kept: &[u16]) -> Errors {
     let mut errors = Errors { cases: cases.len() * WIDTH, ..Errors::default() };
     for ((case, &truth), &kept) in cases.iter().zip(truths).zip(kept) {
         errors.wrong_verdicts += (truth ^ kept).count_ones() as usize;
@@ -141,16 +117,16 @@ fn errors(cases: &[Case], truths: &[u16], kept: &[u16]) -> Errors {
 }
 
 /// A ray as every cull sees it: its line from the point nearest to the middle of the scene, in double precision.
-struct Line {
-    direction: Vector<f64>,
-    nearest: Vector<f64>,
+struct CullLine {
+    direction: Components<f64>,
+    nearest: Components<f64>,
     /// Where the ray begins and where the scene ends.
     start: f64,
     end: f64,
     error: f64,
 }
 
-impl Line {
+impl CullLine {
     fn new(ray: &[f64; 6]) -> Self {
         let [ox, oy, oz, dx, dy, dz] = *ray;
         let along = length([dx, dy, dz]);
@@ -164,15 +140,15 @@ impl Line {
 }
 
 /// The distance from each center to the part of the ray in the scene, with a margin in half-ulps of 1.
-fn balls<'a, T: Real + 'a>(cases: &'a [Case], margin: f64) -> Run<'a> {
-    struct Balls<T> {
+fn balls<'a, T: Float + 'a>(cases: &'a [CullCase], margin: f64) -> CullRun<'a> {
+    struct PackedBalls<T> {
         center: [[T; WIDTH]; 3],
         radius: [T; WIDTH],
     }
-    let packed: Vec<(&Case, Balls<T>)> = cases
+    let packed: Vec<(&CullCase, PackedBalls<T>)> = cases
         .iter()
         .map(|case| {
-            let mut balls = Balls { center: [[T::of(0.0); WIDTH]; 3], radius: [T::of(0.0); WIDTH] };
+            let mut balls = PackedBalls { center: [[T::of(0.0); WIDTH]; 3], radius: [T::of(0.0); WIDTH] };
             for (lane, &[x, y, z, r]) in case.balls.iter().enumerate() {
                 let center = [x, y, z].map(T::of);
                 let moved = length([0, 1, 2].map(|i| center[i].wide() - [x, y, z][i]));
@@ -186,7 +162,7 @@ fn balls<'a, T: Real + 'a>(cases: &'a [Case], margin: f64) -> Run<'a> {
         .collect();
     Box::new(move |kept| {
         for ((case, balls), kept) in packed.iter().zip(kept) {
-            let line = Line::new(&case.ray);
+            let line = CullLine::new(&case.ray);
             let (w, q) = (line.direction.map(T::of), line.nearest.map(T::of));
             // Two unit vectors across the ray (Duff et al. 2017).
             let one = T::of(1.0);
@@ -221,8 +197,8 @@ fn balls<'a, T: Real + 'a>(cases: &'a [Case], margin: f64) -> Run<'a> {
 }
 
 /// The boxes around the balls, by slabs.
-fn boxes(cases: &[Case]) -> Run<'_> {
-    let packed: Vec<(&Case, [[f32; WIDTH]; 6])> = cases
+fn boxes(cases: &[CullCase]) -> CullRun<'_> {
+    let packed: Vec<(&CullCase, [[f32; WIDTH]; 6])> = cases
         .iter()
         .map(|case| {
             let plane = |row: usize, [x, y, z, r]: [f64; 4]| match row {
@@ -234,7 +210,7 @@ fn boxes(cases: &[Case]) -> Run<'_> {
         .collect();
     Box::new(move |kept| {
         for ((case, planes), kept) in packed.iter().zip(kept) {
-            let line = Line::new(&case.ray);
+            let line = CullLine::new(&case.ray);
             let slack = f32::at_least(8.0 * f32::HALF_ULP + line.error);
             let slabs = [0, 1, 2].map(|axis| {
                 let (w, q) = (f32::of(line.direction[axis]), f32::of(line.nearest[axis]));
@@ -257,7 +233,7 @@ fn boxes(cases: &[Case]) -> Run<'_> {
     })
 }
 
-fn exact_test(cases: &[Case]) -> Run<'_> {
+fn exact_test(cases: &[CullCase]) -> CullRun<'_> {
     let shapes: Vec<(Ray, [Sphere; WIDTH])> = cases
         .iter()
         .map(|case| {
@@ -273,29 +249,33 @@ fn exact_test(cases: &[Case]) -> Run<'_> {
     })
 }
 
+/// A ray from a distance through a point of the scene.
+fn ray(r: &mut Random, distance: f64) -> ([f64; 3], [f64; 3]) {
+    let origin = r.unit().map(|x| x * distance);
+    let target = r.unit().map(|x| x * 0.5);
+    (origin, plus(target, origin, -1.0))
+}
+
+/// A ball that the ray passes at its radius, changed by a small share.
+fn beside(r: &mut Random, (o, d): ([f64; 3], [f64; 3]), radius: f64) -> [f64; 4] {
+    let w = d.map(|x| x / length(d));
+    let outward = cross(w, r.unit());
+    let middle = -(o[0] * w[0] + o[1] * w[1] + o[2] * w[2]);
+    let foot = plus(o, w, middle + r.within(-0.5, 0.5));
+    let distance = radius * (1.0 + r.exponent(-10.0, -5.0));
+    let [x, y, z] = plus(foot, outward, distance / length(outward));
+    [x, y, z, radius]
+}
+
+/// A case whose balls are made one after the other.
+fn with_balls(r: &mut Random, (o, d): ([f64; 3], [f64; 3]), mut ball: impl FnMut(&mut Random) -> [f64; 4]) -> CullCase {
+    let balls = [0; WIDTH].map(|_| ball(r));
+    CullCase { ray: [o[0], o[1], o[2], d[0], d[1], d[2]], balls }
+}
+
 /// The ordinary class first, then the hard ones, of `count` rays each.
-fn classes(count: usize) -> Vec<(&'static str, Vec<Case>)> {
-    /// A ray from a distance through a point of the scene.
-    fn ray(r: &mut Random, distance: f64) -> ([f64; 3], [f64; 3]) {
-        let origin = r.unit().map(|x| x * distance);
-        let target = r.unit().map(|x| x * 0.5);
-        (origin, plus(target, origin, -1.0))
-    }
-    /// A ball that the ray passes at its radius, changed by a small share.
-    fn beside(r: &mut Random, (o, d): ([f64; 3], [f64; 3]), radius: f64) -> [f64; 4] {
-        let w = d.map(|x| x / length(d));
-        let outward = cross(w, r.unit());
-        let middle = -(o[0] * w[0] + o[1] * w[1] + o[2] * w[2]);
-        let foot = plus(o, w, middle + r.within(-0.5, 0.5));
-        let distance = radius * (1.0 + r.exponent(-10.0, -5.0));
-        let [x, y, z] = plus(foot, outward, distance / length(outward));
-        [x, y, z, radius]
-    }
-    fn with_balls(r: &mut Random, (o, d): ([f64; 3], [f64; 3]), mut ball: impl FnMut(&mut Random) -> [f64; 4]) -> Case {
-        let balls = [0; WIDTH].map(|_| ball(r));
-        Case { ray: [o[0], o[1], o[2], d[0], d[1], d[2]], balls }
-    }
-    type Make = fn(&mut Random) -> Case;
+fn classes(count: usize) -> Vec<(&'static str, Vec<CullCase>)> {
+    type Make = fn(&mut Random) -> CullCase;
     let makers: [(&str, Make); 6] = [
         ("ordinary", |r| {
             let ray = ray(r, 4.0);
@@ -368,7 +348,7 @@ mod tests {
         let anchor = |x: f64| [x, 0.0, 0.0, 0.01];
         let mut random = Random::new(7);
         let r = &mut random;
-        let cases: Vec<Case> = std::iter::repeat_with(|| {
+        let cases: Vec<CullCase> = std::iter::repeat_with(|| {
             let origin = r.unit().map(|x| x * 4.0);
             let direction = plus(r.unit().map(|x| x * 0.5), origin, -1.0);
             let w = direction.map(|x| x / length(direction));
@@ -382,7 +362,7 @@ mod tests {
                 *ball = [x, y, z, 0.05];
             }
             let [[ox, oy, oz], [dx, dy, dz]] = [origin, direction];
-            Case { ray: [ox, oy, oz, dx, dy, dz], balls }
+            CullCase { ray: [ox, oy, oz, dx, dy, dz], balls }
         })
         .filter(|case| truth(case) == 0)
         .take(500)
@@ -391,7 +371,7 @@ mod tests {
         let mut kept = vec![0; cases.len()];
         (ours.prepare)(&cases)(&mut kept);
         let restated: u32 = kept.iter().map(|kept| kept.count_ones()).sum();
-        let tests = |case: &Case| {
+        let tests = |case: &CullCase| {
             let sphere = |ball: [f64; 4]| Sphere::new(dvec3(&ball, 0), ball[3]).expect("radii are positive");
             let tree = Bvh::new(case.balls.map(sphere).to_vec(), Vec::new());
             let ray = Ray::new(dvec3(&case.ray, 0), dvec3(&case.ray, 3)).expect("a valid ray");

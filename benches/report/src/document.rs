@@ -1,11 +1,12 @@
 //! What a report says, made from the measurements alone: first which method to choose, then everything.
 
-use super::Report;
 use super::markup::{Block, Picture};
 use super::measure::{Cell, Errors, Kernel, Measured, NAN_DISTANCE, NOISY, Time};
 use super::pictures::plot::totals;
 use super::pictures::{self, Group, HARD, SHOWN};
-use super::plot::{percent, work_precision};
+use super::plot::work_precision;
+use super::results::Report;
+use super::svg::percent;
 use super::trees::{self, Growth};
 
 /// Returns the whole text.
@@ -51,6 +52,11 @@ pub(super) fn blocks(report: &Report) -> Vec<Block> {
         blocks.push(worst(kernel));
     }
     blocks
+}
+
+/// A row of a table.
+fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(str::to_owned).to_vec()
 }
 
 /// The name of a kernel's plot, in letters that every file system takes.
@@ -129,7 +135,7 @@ const EXTREME: [&str; 3] = ["subnormal", "whole range", "graded"];
 /// Returns the table of what this project's methods cost where it is easy, and where it is hard.
 fn price(report: &Report) -> Block {
     let head = ["kernel", "ordinary", "dearest of ordinary magnitude", "dearest of all"];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    let mut rows = vec![row(head)];
     for kernel in &report.kernels {
         let ours = kernel.methods.iter().filter(|method| method.ours);
         let full = ours.filter(|method| method.has_values || kernel.values.is_none());
@@ -166,7 +172,7 @@ fn which(report: &Report) -> Block {
         "verdicts right, at most 10⁴ ulp",
         "the same, in ordinary cases alone",
     ];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    let mut rows = vec![row(head)];
     for kernel in &report.kernels {
         let full = |method: &&Measured| method.has_values || kernel.values.is_none();
         let methods = || kernel.methods.iter().filter(full);
@@ -268,7 +274,7 @@ fn growth(trees: &[Growth]) -> Block {
         "sphere tests a ray",
         "other hits",
     ];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    let mut rows = vec![row(head)];
     for row in trees {
         let plain = trees.iter().find(|other| other.spheres == row.spheres).map_or(f64::NAN, |r| r.time.median);
         rows.push(vec![
@@ -284,7 +290,7 @@ fn growth(trees: &[Growth]) -> Block {
     Block::Table(rows)
 }
 
-/// A median, what lies between the least and the 95th percentile, and a mark if that is wide.
+/// A median, the least time and the 95th percentile, and a mark if they are far apart.
 fn nanoseconds(time: &Time) -> String {
     let digits = usize::from(time.median < 1000.0);
     let mark = if time.is_noisy() { " ~" } else { "" };
@@ -303,7 +309,7 @@ fn methods(kernel: &Kernel) -> Block {
         "median ulp",
         "largest ulp",
     ];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    let mut rows = vec![row(head)];
     for method in &kernel.methods {
         let total = method.total();
         let verdict = |text: String| if kernel.verdict.is_some() { text } else { "–".to_owned() };
@@ -362,7 +368,7 @@ fn classes(kernel: &Kernel) -> Block {
 /// Returns the cases that break each method, as the bits of their numbers.
 fn worst(kernel: &Kernel) -> Block {
     let head = ["method", "class", "what", "the case's doubles, as bits"];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    let mut rows = vec![row(head)];
     for method in &kernel.methods {
         let wrong = method.classes.iter().find_map(|cell| Some((cell, cell.errors.first_wrong.as_ref()?)));
         let far = method

@@ -1,6 +1,6 @@
 //! Where the names of marks go in a plot: beside them, and not on each other.
 
-use super::plot::escape;
+use super::svg::escape;
 
 /// Width of a letter and height of a line, in pixels, of the font that plots use.
 const LETTER: f64 = 6.6;

@@ -1,7 +1,8 @@
 //! Speed against error, for every kernel, from one command.
 //!
-//! Each kernel is run by several [`methods`] on several classes of [`cases`], judged by an exact [`mod@reference`] and timed
-//! on the very same cases ([`measure`]). What was measured is written as JSON; text and plots are made from it alone.
+//! Each kernel is run by several [`methods`] on several classes of [`cases`], judged by an exact [`mod@reference`] and
+//! timed on the very same cases ([`measure`]). What was measured is written as JSON; text and plots are made from it
+//! alone.
 
 mod cases;
 mod check;
@@ -15,12 +16,14 @@ mod measure;
 mod methods;
 mod pictures;
 mod plot;
+mod progress;
 mod random;
 mod reference;
+mod results;
+mod svg;
 mod trees;
 
 use std::fs;
-use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -31,18 +34,15 @@ use figures::outcome::{Failure, exit_code, parsed};
 use figures::output::check_new_folder;
 use figures::stderr;
 use rt_io::save_atomically;
-use serde::{Deserialize, Serialize};
 
-use machine::Machine;
 use markup::{Block, Picture};
-use measure::{Effort, Kernel};
-use pictures::Pictured;
-use trees::Growth;
+use measure::Effort;
+use results::Report;
 
 /// Measures the speed and the error of every kernel beside the textbook's methods
 #[derive(Parser, Clone, Debug)]
 #[command(name = "report", version)]
-struct Options {
+struct ReportOptions {
     /// The folder to write report.json, report.md, report.html, plots and pictures into
     #[arg(short, long, value_name = "DIR", default_value = "report")]
     out: PathBuf,
@@ -66,16 +66,6 @@ fn factor(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("expected a number of at least 1, found {text:?}"))
 }
 
-/// All that one run measured, and where.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Report {
-    machine: Machine,
-    effort: Effort,
-    kernels: Vec<Kernel>,
-    trees: Vec<Growth>,
-    pictures: Vec<Pictured>,
-}
-
 const FULL: Effort = Effort { cases: 2048, rounds: 11, timing: 300_000, spheres: 1_000_000, rows: 150 };
 const QUICK: Effort = Effort { cases: 128, rounds: 9, timing: 20_000, spheres: 10_000, rows: 48 };
 
@@ -87,7 +77,7 @@ fn main() -> ExitCode {
 }
 
 /// Measures, or reads what was measured, and writes or compares it.
-fn run(options: &Options) -> Result<(), Failure> {
+fn run(options: &ReportOptions) -> Result<(), Failure> {
     if options.out == Path::new("-") {
         return Err(Failure::Usage("a report is many files and needs a folder: --out DIR".to_owned()));
     }
@@ -107,28 +97,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     write(&report, &options.out)?;
     stderr::tell(&format!("report: written to {}", options.out.display()));
     Ok(())
-}
-
-/// Tells what is being measured, if somebody watches.
-fn progress(what: &str) {
-    if io::stderr().is_terminal() {
-        stderr::tell(&format!("measuring {what}"));
-    }
-}
-
-impl Report {
-    /// Measures everything.
-    fn measure(effort: Effort) -> Self {
-        // Asked before the work, which is load itself.
-        let machine = Machine::this();
-        Self {
-            machine,
-            effort,
-            kernels: kernels::kernels(effort),
-            trees: trees::growth(effort),
-            pictures: pictures::pictures(effort),
-        }
-    }
 }
 
 fn read(path: &Path) -> Result<Report, FileError> {

@@ -1,6 +1,6 @@
 //! A text of titles, paragraphs, tables and pictures, once as Markdown and once as a page of its own.
 
-use super::plot::escape;
+use super::svg::escape;
 
 /// A piece of text.
 pub(super) enum Block {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::Class;
 use super::methods::{Answer, Method, Run};
-use super::progress;
+use super::progress::progress;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -113,6 +113,11 @@ pub(super) struct Errors {
 pub(super) const NAN_DISTANCE: f64 = 18_446_744_073_709_551_616.0;
 
 impl Measured {
+    /// A method of which nothing was measured yet.
+    pub(super) fn new(name: &str, source: &str, ours: bool, has_values: bool) -> Self {
+        Self { name: name.to_owned(), source: source.to_owned(), ours, has_values, classes: Vec::new() }
+    }
+
     /// Returns the errors of all classes together; the median is that of the ordinary class.
     pub(super) fn total(&self) -> Errors {
         let mut total = Errors { median_ulp: self.classes[0].errors.median_ulp, ..Errors::default() };
@@ -145,16 +150,11 @@ pub(super) fn kernel<const M: usize, const N: usize>(
 ) -> Kernel {
     progress(name);
     let described = |text: &str| (!text.is_empty()).then(|| text.to_owned());
-    let mut measured: Vec<Measured> = methods
-        .iter()
-        .map(|method| Measured {
-            name: method.name.to_owned(),
-            source: method.source.to_owned(),
-            ours: method.ours,
-            has_values: method.has_values,
-            classes: Vec::new(),
-        })
-        .collect();
+    let unmeasured = |method: &Method<M, N>| {
+        let Method { name, source, ours, has_values, .. } = *method;
+        Measured::new(name, source, ours, has_values)
+    };
+    let mut measured: Vec<Measured> = methods.iter().map(unmeasured).collect();
     for class in classes {
         let truths: Vec<Answer<N>> = class.cases.par_iter().map(reference).collect();
         let mut answers = vec![Answer::without_values(0); class.cases.len()];

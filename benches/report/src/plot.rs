@@ -1,19 +1,18 @@
 //! Work-precision diagrams as SVG: error across, time up, one point a method.
 //!
-//! A mark is at the largest error on ordinary cases, and a line leads from it to the largest error on all classes. An error of
-//! zero has its own column at the left, NaN one at the right; the scale between them is logarithmic. A method is
-//! hollow if another is no worse in time, both errors and wrong verdicts; those that no other beats in time and ordinary error
-//! are joined. A triangle marks wrong verdicts, a whisker leads from the least time to the 95th percentile. Blue and orange are Okabe and Ito's, told apart by all; colours follow the reader's
+//! A mark is at the largest error on ordinary cases, and a line leads from it to the largest error on all classes. An
+//! error of zero has its own column at the left, NaN one at the right; the scale between them is logarithmic. A method
+//! is hollow if another is no worse in time, both errors and wrong verdicts; those that no other beats in time and
+//! ordinary error are joined. A triangle marks wrong verdicts, a whisker leads from the least time to the 95th
+//! percentile. Blue and orange are Okabe and Ito's, distinct for colour-blind readers too; colours follow the reader's
 //! light or dark setting.
 
 use std::fmt::Write;
 
 use super::labels::Labels;
 use super::measure::{Errors, Kernel, Measured, NAN_DISTANCE};
+use super::svg::{HEIGHT, LEFT, WIDTH, percent, style};
 
-const WIDTH: f64 = 800.0;
-const HEIGHT: f64 = 440.0;
-const LEFT: f64 = 70.0;
 const RIGHT: f64 = 24.0;
 const TOP: f64 = 44.0;
 const BOTTOM: f64 = 66.0;
@@ -21,7 +20,7 @@ const BOTTOM: f64 = 66.0;
 const COLUMN: f64 = 60.0;
 
 /// A method's place in a diagram.
-struct Point<'a> {
+struct PlotPoint<'a> {
     method: &'a Measured,
     /// Where its error on ordinary cases and on all is, and its time.
     x: f64,
@@ -45,7 +44,7 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
     } else {
         ((0, 19), "largest error in units of the last place: mark: ordinary cases, line: up to all classes")
     };
-    let mut points: Vec<Point> = kernel
+    let mut points: Vec<PlotPoint> = kernel
         .methods
         .iter()
         .map(|method| {
@@ -57,7 +56,7 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
             let wrong = if kernel.one_sided { total.lost as f64 / total.cases as f64 } else { share(&total) };
             let costs = [method.time().median, ordinary, all, wrong];
             let [x, x_all] = [ordinary, all].map(|error| across(error, decades));
-            Point { method, x, x_all, y: 0.0, whisker: [0.0; 2], wrong, costs, dominated: false, on_front: false }
+            PlotPoint { method, x, x_all, y: 0.0, whisker: [0.0; 2], wrong, costs, dominated: false, on_front: false }
         })
         .collect();
     let times = points.iter().map(|point| point.method.time().median);
@@ -77,7 +76,7 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
         let up = |time: f64| TOP + (HEIGHT - TOP - BOTTOM) * (high - time.log10()) / (high - low);
         let time = point.method.time();
         let (y, whisker) = (up(time.median), [time.least, time.p95.min(10f64.powf(high))].map(up));
-        points[i] = Point { dominated, on_front, y, whisker, ..points[i] };
+        points[i] = PlotPoint { dominated, on_front, y, whisker, ..points[i] };
     }
 
     let mut svg = String::new();
@@ -105,32 +104,6 @@ fn across(error: f64, (first, last): (i32, i32)) -> f64 {
     }
 }
 
-/// Returns the beginning of a diagram: size, colours, title.
-pub(super) fn style(title: &str) -> String {
-    format!(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" role="img">
-<title>{title}</title>
-<style>
-svg {{ --ink: #1b1b1b; --paper: #ffffff; --grid: #d9d9d9; --ours: #0072b2; --other: #d55e00; background: var(--paper); font: 13px sans-serif; }}
-@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e8e8e8; --paper: #16181c; --grid: #3a3d42; --ours: #56b4e9; --other: #e69f00; }} }}
-text {{ fill: var(--ink); }}
-.grid {{ stroke: var(--grid); stroke-width: 1; }}
-.axis {{ stroke: var(--ink); stroke-width: 1; fill: none; }}
-.front {{ stroke: var(--ink); stroke-width: 1.5; stroke-dasharray: 5 4; fill: none; opacity: 0.6; }}
-.ours {{ stroke: var(--ours); fill: var(--ours); }}
-.other {{ stroke: var(--other); fill: var(--other); }}
-.mark {{ stroke-width: 2; }}
-.mark.reach {{ stroke-width: 1.2; }}
-.hollow {{ fill: var(--paper); }}
-.name {{ stroke: var(--paper); stroke-width: 4; paint-order: stroke; }}
-</style>
-<rect width="{WIDTH}" height="{HEIGHT}" fill="var(--paper)"/>
-<text x="{LEFT}" y="24" font-size="16" font-weight="bold">{title}</text>
-"#,
-        title = escape(title),
-    )
-}
-
 fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (low, high): (f64, f64)) {
     let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
     svg.push_str(&style(&kernel.name));
@@ -147,7 +120,7 @@ fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (l
             let _ = writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
         }
     }
-    // Within a decade two or three lines would not tell that the axis is logarithmic.
+    // Two or three lines within a decade would not show that the axis is logarithmic.
     let digits: &[f64] = if high - low < 1.0 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0] } else { &[1.0, 2.0, 5.0] };
     let mut ticks: Vec<f64> = Vec::new();
     for decade in -1..8 {
@@ -176,8 +149,8 @@ fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (l
 }
 
 /// Joins the points that no other beats, as steps.
-fn join_front(svg: &mut String, points: &[Point]) {
-    let mut front: Vec<&Point> = points.iter().filter(|point| point.on_front).collect();
+fn join_front(svg: &mut String, points: &[PlotPoint]) {
+    let mut front: Vec<&PlotPoint> = points.iter().filter(|point| point.on_front).collect();
     front.sort_by(|a, b| a.x.total_cmp(&b.x).then(b.y.total_cmp(&a.y)));
     let mut path = String::new();
     for point in front {
@@ -187,12 +160,12 @@ fn join_front(svg: &mut String, points: &[Point]) {
     let _ = writeln!(svg, r#"<path class="front" d="{path}"/>"#);
 }
 
-fn marks(svg: &mut String, points: &[Point]) {
+fn marks(svg: &mut String, points: &[PlotPoint]) {
     let places = points.iter().map(|point| (point.x, point.y));
     let mut labels = Labels::new(LEFT, WIDTH - RIGHT, places);
     let mut names = String::new();
     for point in points {
-        let Point { x, y, method, .. } = *point;
+        let PlotPoint { x, y, method, .. } = *point;
         let class = format!(
             "mark {}{}",
             if method.ours { "ours" } else { "other" },
@@ -220,23 +193,6 @@ fn marks(svg: &mut String, points: &[Point]) {
     svg.push_str(&names);
 }
 
-/// Returns a share in percent, with at least one digit that is not zero.
-pub(super) fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if percent >= 9.95 {
-        format!("{percent:.0} %")
-    } else if percent >= 0.095 {
-        format!("{percent:.1} %")
-    } else {
-        format!("{percent:.2} %")
-    }
-}
-
-/// Returns the text with what XML would take for markup replaced.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -248,10 +204,5 @@ mod tests {
         assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
         assert!(places[0] < LEFT + COLUMN && places[1] > LEFT + COLUMN);
         assert!(places[3] < WIDTH - RIGHT - COLUMN && places[4] > WIDTH - RIGHT - COLUMN);
-    }
-
-    #[test]
-    fn names_cannot_break_the_markup() {
-        assert_eq!(escape(r#"a < b & "c""#), "a &lt; b &amp; &quot;c&quot;");
     }
 }

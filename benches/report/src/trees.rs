@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 
 use super::labels::Labels;
 use super::measure::{Effort, Time};
-use super::plot::style;
-use super::progress;
+use super::progress::progress;
 use super::random::Random;
+use super::svg::style;
 
 /// What was measured of one method on one number of spheres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

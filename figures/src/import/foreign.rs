@@ -1,43 +1,40 @@
-//! Files in formats that are not read, known by how they begin or by the ending of their name, so that they are refused by
-//! their own name and not as broken TOML.
+//! Files in formats that are not read, known by how they begin or by the ending of their name, so that they are refused
+//! by their own name and not as broken TOML.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use super::problem::{FileProblem, ImportError};
 use crate::text::file_name;
 
-/// A file in another format.
-#[derive(Debug, thiserror::Error)]
-#[error("{path}: {what}; {READ}")]
-pub struct Foreign {
-    path: String,
-    what: String,
+/// Refuses a file that cannot be read by its ending: by what it holds, else by the ending, else for having none.
+pub(super) fn refused(path: &Path) -> ImportError {
+    let ending = ending(path);
+    let what = match (known(path), ending.as_str()) {
+        (Some(format), _) => format!("{format} is not read"),
+        (None, "") => "its name has no ending that says what it is".to_owned(),
+        (None, ending) => format!("files that end in .{ending} are not read"),
+    };
+    FileProblem::Foreign { path: file_name(path), what }.into()
 }
 
-/// What is read, for messages.
-const READ: &str = "a scene is a .toml file, a file of spheres .xyz or .extxyz, a mesh .obj";
-
-impl Foreign {
-    /// Refuses a file that cannot be read by its ending: by what it holds, else by the ending, else for having none.
-    pub(crate) fn refused(path: &Path) -> Self {
-        let ending = ending(path);
-        let what = match (known(path), ending.as_str()) {
-            (Some(format), _) => format!("{format} is not read"),
-            (None, "") => "its name has no ending that says what it is".to_owned(),
-            (None, ending) => format!("files that end in .{ending} are not read"),
-        };
-        Self { path: file_name(path), what }
+/// Returns the error of a reader that has failed on the file at `path` or, if the file begins as another format does,
+/// one that names this format.
+pub(super) fn explained(error: ImportError, path: &Path) -> ImportError {
+    if !error.is_of_content() {
+        return error;
     }
-
-    /// Refuses a file that another reader has failed on, if it begins as another format does.
-    pub(crate) fn told(path: &Path) -> Option<Self> {
-        let format = begins_as(&start(path)?)?;
-        Some(Self { path: file_name(path), what: format!("it holds {format}, which is not read") })
+    match start(path).and_then(|start| begins_as(&start)) {
+        None => error,
+        Some(format) => {
+            let what = format!("it holds {format}, which is not read");
+            FileProblem::Foreign { path: file_name(path), what }.into()
+        }
     }
 }
 
-/// The ending of a file's name in small letters, without what could disturb a message.
+/// The ending of a file's name in lower case; empty if it is long or has other characters than letters and digits.
 fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
     let harmless = ending.len() <= 12 && ending.chars().all(|c| c.is_ascii_alphanumeric());
@@ -96,12 +93,12 @@ fn begins_as(start: &[u8]) -> Option<&'static str> {
         _ if first == "{" || first.starts_with("{\"") => return Some("JSON (as glTF is)"),
         _ => {}
     }
-    // A binary STL has no sign of its own but its length: 80 bytes, a number, and 50 bytes for each triangle.
+    // A binary STL has no magic number: 80 bytes of any kind, a count, and 50 bytes for each triangle.
     let binary = start.len() > 84 && start[..84].contains(&0);
     binary.then_some("binary data")
 }
 
-/// How formats begin that can be told by it.
+/// Formats with a known beginning.
 const MAGIC: [(&[u8], &str); 21] = [
     (b"\x1f\x8b", "gzip data"),
     (b"BZh", "bzip2 data"),
@@ -126,7 +123,7 @@ const MAGIC: [(&[u8], &str); 21] = [
     (b"BLENDER", "a Blender scene"),
 ];
 
-/// The endings of formats that people have.
+/// Formats with a known ending.
 const ENDINGS: [(&str, &[&str]); 24] = [
     ("PDB", &["pdb", "ent", "pdbqt", "pqr"]),
     ("mmCIF", &["cif", "mmcif", "mcif", "bcif"]),

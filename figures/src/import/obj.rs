@@ -1,10 +1,10 @@
 //! Triangles from Wavefront OBJ files.
 //!
-//! Read are vertices, `v x y z` or `v x y z r g b`, and faces, `f 1 2 3`, which count vertices from 1 or, negative, back
-//! from the last above; of `1/2/3` the first number counts. A face may name vertices that come later. `polygon.rs` cuts
-//! faces of more than three vertices. A line that ends in `\` goes on in the next one, unless it has a comment.
-//! Everything else (texture coordinates, normals, materials, lines, points) is passed over, and the mesh tells what it
-//! was: the scene model has no use for it.
+//! Read are vertices, `v x y z` or `v x y z r g b`, and faces, `f 1 2 3`, which count vertices from 1 or, negative,
+//! back from the last above; of `1/2/3` the first number counts. A face may name vertices that come later. `polygon.rs`
+//! cuts faces of more than three vertices. A line that ends in `\` goes on in the next one, unless it has a comment.
+//! Everything else (texture coordinates, normals, materials, lines, points) is ignored, and the mesh lists what it was:
+//! the scene model has no use for it.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
@@ -13,103 +13,12 @@ use std::path::Path;
 use glam::DVec3;
 use rt_geom::Triangle;
 
-use super::foreign::Foreign;
-use super::polygon::{Cutter, MOST_CORNERS, Outcome};
-use super::{Words, shown};
-use crate::text::{Utf16, file_name, without_mark};
-
-/// The longest line, with all lines that continue it.
-const LINE: u64 = 4 << 20;
-
-/// Why a mesh cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ObjError {
-    /// The file could not be opened or read.
-    #[error("cannot read {path}")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A line is not what it should be.
-    #[error("{path}:{line}: {problem}")]
-    Line {
-        /// The file.
-        path: String,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong there.
-        problem: Problem,
-    },
-    /// The file has no face.
-    #[error("{path}: no faces; a mesh has lines such as f 1 2 3")]
-    Empty {
-        /// The file.
-        path: String,
-    },
-    /// None of the faces has an area.
-    #[error("{path}: none of its {flat} triangles has an area: the vertices of each lie on one line")]
-    Flat {
-        /// The file.
-        path: String,
-        /// How many triangles there are.
-        flat: usize,
-    },
-    /// The file is in another format.
-    #[error(transparent)]
-    Foreign(#[from] Foreign),
-}
-
-/// What is wrong with a line.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Problem {
-    /// Something else stands where a number should.
-    #[error("expected a number, found {0:?}")]
-    Number(String),
-    /// A vertex with too few or too many numbers.
-    #[error("a vertex has 3 coordinates, and 3 colors or none; found {0} numbers")]
-    Vertex(usize),
-    /// NaN or an infinity.
-    #[error("a coordinate must be finite")]
-    NotFinite,
-    /// A colour outside 0 to 1.
-    #[error("a color must be from 0 to 1, found {0}")]
-    Color(f64),
-    /// A face with fewer than three vertices.
-    #[error("a face has at least 3 vertices, found {0}")]
-    Face(usize),
-    /// A word that names no vertex.
-    #[error("no vertex {found:?} among the {vertices} above")]
-    Index {
-        /// As written.
-        found: String,
-        /// So many vertices have been read.
-        vertices: usize,
-    },
-    /// A vertex that is not there.
-    #[error("no vertex {number} among the {vertices} of the file")]
-    Missing {
-        /// Its number.
-        number: usize,
-        /// So many vertices are there.
-        vertices: usize,
-    },
-    /// A face that would take too long.
-    #[error("a face with a notch or a corner on a side has at most {MOST_CORNERS} vertices, found {0}")]
-    Large(usize),
-    /// A line that does not end.
-    #[error("a line is longer than {} MiB", LINE >> 20)]
-    LongLine,
-    /// The text is in another encoding.
-    #[error(transparent)]
-    Utf16(#[from] Utf16),
-    /// The mesh is larger than the memory.
-    #[error("not enough memory for the mesh")]
-    Memory,
-}
+use super::foreign;
+use super::polygon::{Cutter, Outcome};
+use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
+use super::words::{Words, number, shown};
+use crate::scene::{LookIndex, Scene};
+use crate::text::{file_name, without_mark};
 
 /// The triangles of a mesh.
 #[derive(Debug, Default, PartialEq)]
@@ -126,7 +35,7 @@ pub struct Mesh {
     pub passed_over: Vec<&'static str>,
 }
 
-/// What a mesh passes over, with the words that stand for it.
+/// What is ignored, with its keywords.
 const PASSED_OVER: [(&str, &[&str]); 6] = [
     ("materials (mtllib, usemtl)", &["mtllib", "usemtl"]),
     ("normals (vn)", &["vn"]),
@@ -140,47 +49,44 @@ const PASSED_OVER: [(&str, &[&str]); 6] = [
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn load(path: &Path) -> Result<Mesh, ObjError> {
+pub fn load(path: &Path) -> Result<Mesh, ImportError> {
     let name = file_name(path);
-    let file = File::open(path).map_err(|source| ObjError::Read { path: name.clone(), source })?;
-    read(BufReader::new(file), &name).map_err(|error| match error {
-        ObjError::Read { .. } => error,
-        // What is no mesh may be something else.
-        _ => Foreign::told(path).map_or(error, ObjError::Foreign),
-    })
+    let file = File::open(path).map_err(|source| FileProblem::Read { path: name.clone(), source })?;
+    read(BufReader::new(file), &name).map_err(|error| foreign::explained(error, path))
 }
 
 /// Reads a mesh from `source`, which errors call `name`.
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn read(mut source: impl BufRead, name: &str) -> Result<Mesh, ObjError> {
+pub fn read(mut source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
     let mut reader = Reader::default();
     let mut bytes = Vec::new();
     let mut line = 0;
+    let path = || name.to_owned();
     loop {
         let (first, read) = (line + 1, statement(&mut source, &mut bytes, &mut line));
-        if !read.map_err(|source| ObjError::Read { path: name.to_owned(), source })? {
+        if !read.map_err(|source| FileProblem::Read { path: path(), source })? {
             break;
         }
-        let complete = bytes.len() as u64 != LINE || bytes.ends_with(b"\n");
-        let done = if complete { reader.statement(&bytes, first) } else { Err(Problem::LongLine) };
-        done.map_err(|problem| ObjError::Line { path: name.to_owned(), line: first, problem })?;
+        let complete = bytes.len() != LONGEST_LINE || bytes.ends_with(b"\n");
+        let done = if complete { reader.statement(&bytes, first) } else { Err(LineProblem::Long) };
+        done.map_err(|problem| ImportError::in_line(name, first, problem))?;
     }
-    let mesh = reader.finish().map_err(|(line, problem)| ObjError::Line { path: name.to_owned(), line, problem })?;
+    let mesh = reader.finish().map_err(|(line, problem)| ImportError::in_line(name, line, problem))?;
     match (mesh.triangles.len(), mesh.flat) {
-        (0, 0) => Err(ObjError::Empty { path: name.to_owned() }),
-        (0, flat) => Err(ObjError::Flat { path: name.to_owned(), flat }),
+        (0, 0) => Err(FileProblem::NoFaces(path()).into()),
+        (0, flat) => Err(FileProblem::Flat { path: path(), flat }.into()),
         _ => Ok(mesh),
     }
 }
 
-/// Reads a line and those that continue it, at most [`LINE`] bytes in all, and counts them; false at the end.
+/// Reads a line and those that continue it, at most [`LONGEST_LINE`] bytes in all, and counts them; false at the end.
 fn statement(source: &mut impl BufRead, bytes: &mut Vec<u8>, line: &mut usize) -> io::Result<bool> {
     bytes.clear();
     loop {
-        let room = LINE - bytes.len() as u64;
-        if source.by_ref().take(room).read_until(b'\n', bytes)? == 0 {
+        let room = LONGEST_LINE - bytes.len();
+        if source.by_ref().take(room as u64).read_until(b'\n', bytes)? == 0 {
             return Ok(!bytes.is_empty());
         }
         *line += 1;
@@ -219,14 +125,14 @@ struct Reader {
 
 impl Reader {
     /// Reads what begins in this line.
-    fn statement(&mut self, bytes: &[u8], line: usize) -> Result<(), Problem> {
+    fn statement(&mut self, bytes: &[u8], line: usize) -> Result<(), LineProblem> {
         let bytes = if line == 1 { without_mark(bytes)? } else { bytes };
         let mut words = Words(bytes);
         let Some(keyword) = words.next() else { return Ok(()) };
         let words = words.take_while(|word| !word.starts_with(b"#"));
         match keyword {
             b"v" => {
-                self.vertices.try_reserve(1).map_err(|_| Problem::Memory)?;
+                self.vertices.try_reserve(1).map_err(|_| LineProblem::MeshMemory)?;
                 self.vertices.push(vertex(words)?);
             }
             b"f" => {
@@ -247,28 +153,28 @@ impl Reader {
     }
 
     /// Cuts the face, or keeps it for later: faces stay in order.
-    fn face(&mut self, line: usize) -> Result<(), Problem> {
+    fn face(&mut self, line: usize) -> Result<(), LineProblem> {
         let known = self.vertices.len();
         if self.corners.len() < 3 {
-            return Err(Problem::Face(self.corners.len()));
+            return Err(LineProblem::Face(self.corners.len()));
         }
         if self.later.is_empty() && self.corners.iter().all(|&corner| corner < known) {
             return self.faces.add(&mut self.mesh, &self.corners, &self.vertices);
         }
-        self.later.try_reserve(1).map_err(|_| Problem::Memory)?;
-        self.later_corners.try_reserve(self.corners.len()).map_err(|_| Problem::Memory)?;
+        self.later.try_reserve(1).map_err(|_| LineProblem::MeshMemory)?;
+        self.later_corners.try_reserve(self.corners.len()).map_err(|_| LineProblem::MeshMemory)?;
         self.later_corners.extend_from_slice(&self.corners);
         self.later.push((line, self.later_corners.len()));
         Ok(())
     }
 
     /// Cuts the faces that were kept; an error comes with its line.
-    fn finish(mut self) -> Result<Mesh, (usize, Problem)> {
+    fn finish(mut self) -> Result<Mesh, (usize, LineProblem)> {
         let mut start = 0;
         for &(line, end) in &self.later {
             let corners = &self.later_corners[start..end];
             if let Some(&corner) = corners.iter().find(|&&corner| corner >= self.vertices.len()) {
-                let missing = Problem::Missing { number: corner + 1, vertices: self.vertices.len() };
+                let missing = LineProblem::Missing { number: corner + 1, vertices: self.vertices.len() };
                 return Err((line, missing));
             }
             let added = self.faces.add(&mut self.mesh, corners, &self.vertices);
@@ -291,10 +197,10 @@ struct Faces {
 
 impl Faces {
     /// Adds the triangles of a face, which has at least three corners, all of them known.
-    fn add(&mut self, mesh: &mut Mesh, corners: &[usize], vertices: &[Vertex]) -> Result<(), Problem> {
+    fn add(&mut self, mesh: &mut Mesh, corners: &[usize], vertices: &[Vertex]) -> Result<(), LineProblem> {
         let most = corners.len() - 2;
-        mesh.triangles.try_reserve(most).map_err(|_| Problem::Memory)?;
-        mesh.vertex_colors.try_reserve(most).map_err(|_| Problem::Memory)?;
+        mesh.triangles.try_reserve(most).map_err(|_| LineProblem::MeshMemory)?;
+        mesh.vertex_colors.try_reserve(most).map_err(|_| LineProblem::MeshMemory)?;
         let before = mesh.triangles.len();
         if let &[a, b, c] = corners {
             mesh.push([a, b, c].map(|corner| vertices[corner]));
@@ -305,7 +211,7 @@ impl Faces {
             match self.cutter.cut(&self.points, &mut self.cuts) {
                 Outcome::Exact => {}
                 Outcome::Crossed => mesh.crossed += 1,
-                Outcome::TooLarge => return Err(Problem::Large(corners.len())),
+                Outcome::TooLarge => return Err(LineProblem::LargeFace(corners.len())),
             }
             for cut in &self.cuts {
                 mesh.push(cut.map(|at| vertices[corners[at as usize]]));
@@ -317,6 +223,29 @@ impl Faces {
 }
 
 impl Mesh {
+    /// Adds the mesh, read from the file at `path`, to a scene, with this look.
+    pub fn add_to(self, scene: &mut Scene, look: LookIndex, path: &Path) {
+        let Self { triangles, vertex_colors, flat, crossed, passed_over } = self;
+        let mut warn = |warning: String| scene.warnings.push(format!("{}: {warning}", file_name(path)));
+        if flat > 0 {
+            let triangles = if flat == 1 { "triangle" } else { "triangles" };
+            warn(format!("left out {flat} {triangles} without area"));
+        }
+        if crossed > 0 {
+            let faces = if crossed == 1 { "face crosses itself" } else { "faces cross themselves" };
+            warn(format!("{crossed} {faces}; the triangles of such a face may overlap"));
+        }
+        if !passed_over.is_empty() {
+            warn(format!("passed over: {}", passed_over.join(", ")));
+        }
+        scene.triangle_looks.resize(scene.triangle_looks.len() + triangles.len(), look);
+        if vertex_colors.iter().any(Option::is_some) || !scene.vertex_colors.is_empty() {
+            scene.vertex_colors.resize(scene.triangles.len(), None);
+            scene.vertex_colors.extend(vertex_colors);
+        }
+        scene.triangles.extend(triangles);
+    }
+
     /// Adds a triangle if it has an area.
     fn push(&mut self, [a, b, c]: [Vertex; 3]) {
         let triangle = Triangle::new(a.0, b.0, c.0).expect("vertices were checked when they were read");
@@ -328,12 +257,12 @@ impl Mesh {
 }
 
 /// Reads a vertex.
-fn vertex<'a>(words: impl Iterator<Item = &'a [u8]>) -> Result<Vertex, Problem> {
+fn vertex<'a>(words: impl Iterator<Item = &'a [u8]>) -> Result<Vertex, LineProblem> {
     let (mut numbers, mut count) = ([0.0; 6], 0);
     for word in words {
-        let number = super::number(word).map_err(Problem::Number)?;
+        let value = number(word)?;
         if let Some(place) = numbers.get_mut(count) {
-            *place = number;
+            *place = value;
         }
         count += 1;
     }
@@ -342,20 +271,20 @@ fn vertex<'a>(words: impl Iterator<Item = &'a [u8]>) -> Result<Vertex, Problem> 
     let (position, color) = match count {
         3 | 4 => (DVec3::new(x, y, z), None),
         6 => (DVec3::new(x, y, z), Some(DVec3::new(red, green, blue))),
-        _ => return Err(Problem::Vertex(count)),
+        _ => return Err(LineProblem::Vertex(count)),
     };
     if !position.is_finite() {
-        return Err(Problem::NotFinite);
+        return Err(LineProblem::Coordinate);
     }
     let bad = color.and_then(|color| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c)));
     match bad {
-        Some(channel) => Err(Problem::Color(channel)),
+        Some(channel) => Err(LineProblem::VertexColor(channel)),
         None => Ok((position, color)),
     }
 }
 
-/// The position in the list of vertices that a face's word means; it may lie beyond those that are there yet.
-fn position(word: &[u8], vertices: usize) -> Result<usize, Problem> {
+/// The position in the list of vertices that a face's word means; it may lie beyond those read so far.
+fn position(word: &[u8], vertices: usize) -> Result<usize, LineProblem> {
     let number = word.split(|&byte| byte == b'/').next().unwrap_or(word);
     let number = std::str::from_utf8(number).ok().and_then(|number| number.parse::<i64>().ok());
     let position = match number {
@@ -363,14 +292,14 @@ fn position(word: &[u8], vertices: usize) -> Result<usize, Problem> {
         Some(number @ ..=-1) => usize::try_from(number.unsigned_abs()).ok().and_then(|n| vertices.checked_sub(n)),
         _ => None,
     };
-    position.ok_or_else(|| Problem::Index { found: shown(word), vertices })
+    position.ok_or_else(|| LineProblem::Index { found: shown(word), vertices })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn parse(text: &str) -> Result<Mesh, ObjError> {
+    fn parse(text: &str) -> Result<Mesh, ImportError> {
         read(text.as_bytes(), "mesh.obj")
     }
 
@@ -464,6 +393,7 @@ mod tests {
     fn flat_triangles_are_left_out_and_counted() {
         let mesh = parse(&format!("{SQUARE}f 1 2 2\nf 1 2 3\nf 1 1 1\nf 1 2 1 2\n")).unwrap();
         assert_eq!((mesh.triangles.len(), mesh.flat), (1, 4));
-        assert!(matches!(parse(&format!("{SQUARE}f 1 2 2\n")), Err(ObjError::Flat { flat: 1, .. })));
+        let error = parse(&format!("{SQUARE}f 1 2 2\n")).unwrap_err();
+        assert!(error.to_string().contains("none of its 1 triangles has an area"), "{error}");
     }
 }

@@ -1,10 +1,10 @@
 //! Cuts a polygon into triangles between its own corners: ear clipping, with exact orientations.
 //!
-//! The corners are projected along a coordinate axis, which keeps them exact, and the triangles are chosen in that plane. The
-//! idea: a corner whose triangle with its two neighbours turns the polygon's way and holds nothing of the rest is an
-//! ear; it is cut off, and the rest is a smaller polygon. Cutting off a triangle changes the winding number by just that
-//! triangle. So where all triangles turn the polygon's way, as here, each point is covered as often as the polygon winds around
-//! it: once inside a simple polygon, never outside. G. H. Meisters, "Polygons Have Ears", 1975.
+//! The corners are projected along a coordinate axis, which keeps them exact, and the triangles are chosen in that
+//! plane. The idea: a corner whose triangle with its two neighbours turns the polygon's way and holds nothing of the
+//! rest is an ear; it is cut off, and the rest is a smaller polygon. Cutting off a triangle changes the winding number
+//! by just that triangle. So where all triangles turn the polygon's way, as here, each point is covered as often as the
+//! polygon winds around it: once inside a simple polygon, never outside. G. H. Meisters, "Polygons Have Ears", 1975.
 //!
 //! - A polygon first turns so that it starts from its least corner, so the cut does not depend on which is listed first.
 //! - A corner in the middle of a side is no ear. It becomes the corner of some triangle, and the neighbouring face, which has
@@ -32,7 +32,7 @@ type Cut = [u32; 3];
 pub(super) enum Outcome {
     /// Every triangle turns the polygon's way.
     Exact,
-    /// The polygon crosses itself, and what was left when no ear was found any more is a fan.
+    /// The polygon crosses itself, and what was left when there was no ear is cut as a fan.
     Crossed,
     /// It has more than [`MOST_CORNERS`] and is not convex; nothing was cut.
     TooLarge,
@@ -42,7 +42,7 @@ pub(super) enum Outcome {
 #[derive(Default)]
 pub(super) struct Cutter {
     /// The corners from the least one on, projected so that the polygon turns counterclockwise.
-    points: Vec<Point>,
+    points: Vec<PlanePoint>,
     /// The position in the list of corners of the first of them.
     first: usize,
     next: Vec<u32>,
@@ -53,7 +53,7 @@ pub(super) struct Cutter {
     posts: Posts,
 }
 
-type Point = [f64; 2];
+type PlanePoint = [f64; 2];
 
 impl Cutter {
     /// Cuts the polygon with these corners, at least three, and appends its triangles, which turn as the polygon does.
@@ -96,8 +96,8 @@ impl Cutter {
         triangles.push(corners.map(|corner| index(wrapped(self.first + corner as usize, n))));
     }
 
-    /// Cuts off ear after ear.
-    fn clip(&mut self, triangles: &mut Vec<Cut>) -> Outcome {
+    /// Links the corners into a ring, takes each as a possible ear, and plants those that can block one.
+    fn start(&mut self) {
         let n = self.points.len();
         self.next.clear();
         self.next.extend((0..n).map(|at| index(wrapped(at + 1, n))));
@@ -107,17 +107,20 @@ impl Cutter {
         self.queued.resize(n, true);
         self.queue.clear();
         self.queue.extend((0..n).map(index));
-        let convex = |at: &usize| {
-            orientation(self.points[wrapped(at + n - 1, n)], self.points[*at], self.points[wrapped(at + 1, n)])
-                == Ordering::Greater
-        };
+        let corner = |at: usize| self.points[wrapped(at, n)];
+        let convex = |at: &usize| orientation(corner(at + n - 1), corner(*at), corner(at + 1)) == Ordering::Greater;
         self.posts.plant((0..n).filter(|at| !convex(at)).map(index), &self.points);
+    }
 
+    /// Cuts off ear after ear.
+    fn clip(&mut self, triangles: &mut Vec<Cut>) -> Outcome {
+        self.start();
+        let n = self.points.len();
         let (mut left, mut passes, mut some) = (n, 0, 0);
         while left > 2 {
             let Some(v) = self.queue.pop_front() else {
-                // Ears of a simple polygon appear beside an ear that is cut, and were queued then. In one whose sides touch, and
-                // so in what is left of it, one may appear elsewhere.
+                // Ears of a simple polygon appear beside an ear that is cut, and were queued then. In one whose sides
+                // touch, and so in what is left of it, one may appear elsewhere.
                 if passes == PASSES {
                     break;
                 }
@@ -173,7 +176,7 @@ impl Cutter {
             }
             let at = self.points[z as usize];
             let sides = [orientation(p, q, at), orientation(q, r, at), orientation(r, p, at)];
-            let leads_in = |inside: &dyn Fn(Point) -> bool| {
+            let leads_in = |inside: &dyn Fn(PlanePoint) -> bool| {
                 [self.before[z as usize], self.next[z as usize]].into_iter().any(|z| inside(self.points[z as usize]))
             };
             let left_of = |from, to, at| orientation(from, to, at) == Ordering::Greater;
@@ -190,7 +193,7 @@ impl Cutter {
     }
 }
 
-/// How often all corners are looked at again when no ear is known. A simple polygon needs it never.
+/// How often all corners are tried again when no ear is known. A simple polygon never needs that.
 const PASSES: u32 = 8;
 
 /// Some corners in a tree of boxes, to ask which of them lie in a triangle.
@@ -198,17 +201,17 @@ const PASSES: u32 = 8;
 struct Posts {
     /// The corners, those of each node together: a node's first half is its first child's.
     order: Vec<u32>,
-    /// For each corner of the polygon its place in `order`, from 1; 0 if it is not there any more.
+    /// For each corner of the polygon its place in `order`, from 1; 0 once it is removed.
     place: Vec<u32>,
     /// Node `k` has the children `2 k + 1` and `2 k + 2`: its box, low and high, and how many of its corners are left.
-    nodes: Vec<([Point; 2], u32)>,
+    nodes: Vec<([PlanePoint; 2], u32)>,
 }
 
-/// So many corners are looked at one by one.
+/// Up to this many corners are tested one by one.
 const LEAF: usize = 8;
 
 impl Posts {
-    fn plant(&mut self, corners: impl Iterator<Item = u32>, points: &[Point]) {
+    fn plant(&mut self, corners: impl Iterator<Item = u32>, points: &[PlanePoint]) {
         self.order.clear();
         self.order.extend(corners);
         self.place.clear();
@@ -238,14 +241,14 @@ impl Posts {
         }
     }
 
-    /// Whether `blocks` holds for a corner that is there; those that surely lie outside the triangle are passed over.
-    fn any(&self, points: &[Point], triangle: [Point; 3], mut blocks: impl FnMut(u32) -> bool) -> bool {
+    /// Whether `blocks` holds for a corner in the tree; those outside the triangle's box are skipped.
+    fn any(&self, points: &[PlanePoint], triangle: [PlanePoint; 3], mut blocks: impl FnMut(u32) -> bool) -> bool {
         let [p, q, r] = triangle;
         let low = [0, 1].map(|k| p[k].min(q[k]).min(r[k]));
         let high = [0, 1].map(|k| p[k].max(q[k]).max(r[k]));
-        let apart = |from: Point, to: Point| (0..2).any(|k| to[k] < low[k] || high[k] < from[k]);
+        let apart = |from: PlanePoint, to: PlanePoint| (0..2).any(|k| to[k] < low[k] || high[k] < from[k]);
         // A box lies beyond a side if its corner farthest to the side's left does.
-        let beyond = |[from, to]: [Point; 2], [low, high]: [Point; 2]| {
+        let beyond = |[from, to]: [PlanePoint; 2], [low, high]: [PlanePoint; 2]| {
             let x = if to[1] > from[1] { low[0] } else { high[0] };
             let y = if to[0] > from[0] { high[1] } else { low[1] };
             orientation(from, to, [x, y]) == Ordering::Less
@@ -280,7 +283,7 @@ impl Posts {
 }
 
 /// Sorts corners into a tree below `node`: halves along the longer side of their box.
-fn build(order: &mut [u32], points: &[Point], node: usize, nodes: &mut Vec<([Point; 2], u32)>) {
+fn build(order: &mut [u32], points: &[PlanePoint], node: usize, nodes: &mut Vec<([PlanePoint; 2], u32)>) {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for &corner in &*order {
         for k in 0..2 {
@@ -308,7 +311,7 @@ fn build(order: &mut [u32], points: &[Point], node: usize, nodes: &mut Vec<([Poi
 /// Whether all corners turn left and the outline goes around once.
 ///
 /// Going around once, the direction changes between rising and falling (in x, then y) just twice.
-fn is_strictly_convex(points: &[Point]) -> bool {
+fn is_strictly_convex(points: &[PlanePoint]) -> bool {
     let n = points.len();
     let mut changes = 0;
     for at in 0..n {
@@ -321,7 +324,7 @@ fn is_strictly_convex(points: &[Point]) -> bool {
     changes == 2
 }
 
-fn is_before(p: Point, q: Point) -> bool {
+fn is_before(p: PlanePoint, q: PlanePoint) -> bool {
     p[0] < q[0] || (p[0] == q[0] && p[1] < q[1])
 }
 
@@ -369,14 +372,14 @@ const U: f64 = f64::EPSILON / 2.0;
 
 /// Twice the area along an axis is a sum of at most 2^21 terms (a line has so many words), each a multiple of 2^-2148
 /// of at most 2^2051: 68 limbs. An orientation is one such term.
-type Integer = Dyadic<68>;
+type AreaInteger = Dyadic<68>;
 
 /// Returns an axis along which the polygon is seen with an area, and how it turns there.
 ///
 /// The area is at least half of that along any other axis. `None` if all three are exactly zero.
 ///
-/// Each difference is off by `u`, each product by `3.01 u` and what underflows, and a sum of `n` terms by `n u` more, relative to
-/// the sum of the magnitudes of all products. The bound is twice that, for the rounding of itself; an area
+/// Each difference is off by `u`, each product by `3.01 u` and what underflows, and a sum of `n` terms by `n u` more,
+/// relative to the sum of the magnitudes of all products. The bound is twice that, for the rounding of itself; an area
 /// of four times the bound is off by less than a third of the true one.
 fn facing(corners: impl Iterator<Item = DVec3> + Clone) -> Option<(usize, Ordering)> {
     let start = corners.clone().next()?;
@@ -399,8 +402,8 @@ fn facing(corners: impl Iterator<Item = DVec3> + Clone) -> Option<(usize, Orderi
 
 #[cold]
 fn exact_facing(start: DVec3, corners: impl Iterator<Item = DVec3> + Clone) -> Option<(usize, Ordering)> {
-    let spoke = |corner: DVec3| [0, 1, 2].map(|k| Integer::from_f64(corner[k]) - Integer::from_f64(start[k]));
-    let mut area = [Integer::ZERO; 3];
+    let spoke = |corner: DVec3| [0, 1, 2].map(|k| AreaInteger::from_f64(corner[k]) - AreaInteger::from_f64(start[k]));
+    let mut area = [AreaInteger::ZERO; 3];
     for (v, w) in corners.clone().zip(corners.skip(1)) {
         let (v, w) = (spoke(v), spoke(w));
         for (k, area) in area.iter_mut().enumerate() {
@@ -408,7 +411,7 @@ fn exact_facing(start: DVec3, corners: impl Iterator<Item = DVec3> + Clone) -> O
             *area = &*area + &(&v[i] * &w[j] - &v[j] * &w[i]);
         }
     }
-    let axis = largest(area.clone().map(Integer::abs), |a, b| (a - b).sign() == Ordering::Greater);
+    let axis = largest(area.clone().map(AreaInteger::abs), |a, b| (a - b).sign() == Ordering::Greater);
     match area[axis].sign() {
         Ordering::Equal => None,
         turn => Some((axis, turn)),
@@ -433,9 +436,9 @@ fn are_on_a_line(corners: &[DVec3]) -> bool {
 
 /// Which way three points turn: `Greater` is counterclockwise, `Equal` on a line. Exact for finite coordinates.
 ///
-/// Each product in the determinant is off by at most `3.01 u` of itself, and by what underflows; the last subtraction has the
-/// sign of its exact operands' difference.
-fn orientation(p: Point, q: Point, r: Point) -> Ordering {
+/// Each product in the determinant is off by at most `3.01 u` of itself, and by what underflows; the last subtraction
+/// has the sign of its exact operands' difference.
+fn orientation(p: PlanePoint, q: PlanePoint, r: PlanePoint) -> Ordering {
     let left = (q[0] - p[0]) * (r[1] - p[1]);
     let right = (q[1] - p[1]) * (r[0] - p[0]);
     let error = 4.0 * U * (left.abs() + right.abs()) + f64::MIN_POSITIVE;
@@ -445,8 +448,8 @@ fn orientation(p: Point, q: Point, r: Point) -> Ordering {
 }
 
 #[cold]
-fn exact_orientation(p: Point, q: Point, r: Point) -> Ordering {
-    let difference = |a: f64, b: f64| Integer::from_f64(a) - Integer::from_f64(b);
+fn exact_orientation(p: PlanePoint, q: PlanePoint, r: PlanePoint) -> Ordering {
+    let difference = |a: f64, b: f64| AreaInteger::from_f64(a) - AreaInteger::from_f64(b);
     let left = &difference(q[0], p[0]) * &difference(r[1], p[1]);
     let right = &difference(q[1], p[1]) * &difference(r[0], p[0]);
     (left - right).sign()
@@ -498,8 +501,8 @@ mod tests {
         total(corners[1..].windows(2).map(|pair| area([corners[0], pair[0], pair[1]], axis)))
     }
 
-    /// Checks that a simple polygon is cut into triangles that all turn its way and meet side to side; such triangles cover
-    /// it exactly once.
+    /// Checks that a simple polygon is cut into triangles that all turn its way and meet side to side; such triangles
+    /// cover it exactly once.
     fn check(corners: &[DVec3], what: &str) -> Vec<Cut> {
         let mut triangles = Vec::new();
         let outcome = Cutter::default().cut(corners, &mut triangles);
@@ -661,8 +664,8 @@ mod tests {
 
     #[test]
     fn many_small_polygons_on_a_grid_are_cut_exactly() {
-        // Whole coordinates from 0 to 6 make every degenerate case; those that cross themselves are sorted out by an oracle
-        // that compares all pairs of sides.
+        // Whole coordinates from 0 to 6 make every degenerate case; those that cross themselves are sorted out by an
+        // oracle that compares all pairs of sides.
         let random = &mut Random(3);
         let (mut simple, mut crossed) = (0, 0);
         while simple < 4000 {

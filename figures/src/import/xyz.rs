@@ -1,14 +1,14 @@
 //! Spheres from XYZ files, plain and extended: molecules and particles by the million.
 //!
 //! A file is a line with the number of atoms, a line of comment, then a line for each atom. In a plain file that is
-//! `element x y z`, and whatever follows is passed over. In an extended one the comment has `Properties=name:type:columns`
-//! groups, joined by colons, that say what the columns are; of these `species`, `pos`, `radius` and `color` are read
-//! (`element`, `type` and capitals will do too). Only the first frame counts; what follows it is told. Empty lines may stand
-//! before it. `elements.rs` has the rule for names that are no symbols.
+//! `element x y z`, and the rest of the line is ignored. In an extended one the comment has
+//! `Properties=name:type:columns` groups, joined by colons, that say what the columns are; of these `species`, `pos`,
+//! `radius` and `color` are read (`element`, `type` and capitals will do too). Only the first frame counts; a warning
+//! says what follows it. Empty lines may stand before it. `elements.rs` has the rule for names that are not symbols.
 //!
-//! The file streams through a buffer of a few megabytes. Each filling ends at a line's end, is cut into pieces at lines'
-//! ends, and the pieces are read in parallel; what they hold is appended in order. So memory is the spheres and the buffer,
-//! and the result does not depend on threads.
+//! The file streams through a buffer of a few megabytes. Each filling ends at a line's end, is cut into pieces at
+//! lines' ends, and the pieces are read in parallel; what they hold is appended in order. So memory is the spheres and
+//! the buffer, and the result does not depend on threads.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -19,106 +19,17 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::Sphere;
 
-use super::elements::{self, Found};
-use super::foreign::Foreign;
-use super::{Words, shown};
-use crate::scene::COLOR;
-use crate::text::{Utf16, file_name, quoted, without_mark};
+use super::elements::{self, ElementName};
+use super::foreign;
+use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
+use super::words::{Words, number, shown};
+use crate::scene::{LookIndex, Scene};
+use crate::text::{file_name, quoted, without_mark};
 
-/// The size of the buffer, and so the longest line.
-const BUFFER: usize = 4 << 20;
+/// The size of the buffer.
+const BUFFER: usize = LONGEST_LINE;
 /// Fewer bytes than this are not worth a thread.
 const PIECE: usize = 64 << 10;
-
-/// Why a file of spheres cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum XyzError {
-    /// The file could not be opened or read.
-    #[error("cannot read {path}")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A line is not what it should be.
-    #[error("{path}:{line}: {problem}")]
-    Line {
-        /// The file.
-        path: String,
-        /// The line, from 1.
-        line: usize,
-        /// What is wrong there.
-        problem: Problem,
-    },
-    /// The file is in another format.
-    #[error(transparent)]
-    Foreign(#[from] Foreign),
-}
-
-/// What is wrong with a line.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Problem {
-    /// The first line is not a number of atoms.
-    #[error("expected the number of atoms, found {0:?}")]
-    Count(String),
-    /// The file ends before its last atom.
-    #[error("the file ends after {found} of {expected} atoms")]
-    Short {
-        /// The number in the first line.
-        expected: u64,
-        /// The number of lines that are there.
-        found: u64,
-    },
-    /// `Properties` in the comment cannot be understood.
-    #[error("Properties must be name:type:columns groups with pos:R:3 among them, found {0:?}")]
-    Properties(String),
-    /// A column is missing.
-    #[error("expected {expected} columns, found {found}")]
-    Columns {
-        /// At least this many.
-        expected: usize,
-        /// As many as there are.
-        found: usize,
-    },
-    /// Something else stands where a number should.
-    #[error("expected a number, found {0:?}")]
-    Number(String),
-    /// NaN, an infinity, or beyond the doubles once scaled.
-    #[error("{name} must be finite, found {found}")]
-    NotFinite {
-        /// The column.
-        name: &'static str,
-        /// As written.
-        found: String,
-    },
-    /// A radius below 0.
-    #[error("radius must not be negative, found {0}")]
-    Negative(f64),
-    /// A colour outside 0 to 1.
-    #[error("color must be from 0 to 1, found {0}")]
-    Color(f64),
-    /// Neither a symbol nor an atomic number.
-    #[error("unknown element {0:?}; expected a symbol such as C, a label such as C1 or OW, or an atomic number")]
-    Element(String),
-    /// Nothing says how large the spheres are.
-    #[error("neither an element nor a radius column; give the spheres a radius")]
-    NoRadius,
-    /// A line that does not end.
-    #[error("a line is longer than {} MiB", BUFFER >> 20)]
-    LongLine,
-    /// More colours than can be numbered.
-    #[error("more than {COLOR} colors")]
-    TooManyColors,
-    /// The text is in another encoding.
-    #[error(transparent)]
-    Utf16(#[from] Utf16),
-    /// The spheres need more memory than there is.
-    #[error("not enough memory for {0} atoms")]
-    Memory(u64),
-}
 
 /// How a file's spheres are taken.
 #[derive(Clone, Copy, Debug)]
@@ -146,7 +57,7 @@ pub struct Spheres {
     pub color_indices: Vec<u32>,
     /// The colours that occur, in order of appearance: each once, unless there are more than 65,536.
     pub colors: Vec<DVec3>,
-    /// What whoever draws them should know: names that are no symbols, and what follows the first frame.
+    /// Warnings: names that are not symbols, and what follows the first frame.
     pub notes: Vec<String>,
 }
 
@@ -154,61 +65,83 @@ pub struct Spheres {
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn load(path: &Path, options: Options) -> Result<Spheres, XyzError> {
+pub fn load(path: &Path, options: Options) -> Result<Spheres, ImportError> {
     let name = file_name(path);
-    let error = |source| XyzError::Read { path: name.clone(), source };
-    let file = File::open(path).map_err(error)?;
+    let file = File::open(path).map_err(|source| FileProblem::Read { path: name.clone(), source })?;
     let length = file.metadata().map_or(0, |metadata| metadata.len());
-    read(file, length, &name, options).map_err(|error| match error {
-        XyzError::Line { .. } => Foreign::told(path).map_or(error, XyzError::Foreign),
-        _ => error,
-    })
+    read(file, length, &name, options).map_err(|error| foreign::explained(error, path))
 }
 
 /// Reads spheres from `source`, which errors call `name` and which has about `length` bytes (0: unknown).
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn read(source: impl Read, length: u64, name: &str, options: Options) -> Result<Spheres, XyzError> {
-    let mut lines = Blocks { source, buffer: Vec::new(), start: 0, ended: false };
+pub fn read(source: impl Read, length: u64, name: &str, options: Options) -> Result<Spheres, ImportError> {
+    let mut blocks = LineBlocks { source, buffer: Vec::new(), start: 0, ended: false };
     let mut line = 0;
-    let result = read_lines(&mut lines, length, options, &mut line);
-    result.map_err(|failure| match failure {
-        Failure::Read(source) => XyzError::Read { path: name.to_owned(), source },
-        Failure::Line(problem) => XyzError::Line { path: name.to_owned(), line, problem },
+    read_lines(&mut blocks, length, options, &mut line).map_err(|failure| match failure {
+        Broken::Read(source) => FileProblem::Read { path: name.to_owned(), source }.into(),
+        Broken::Line(problem) => ImportError::in_line(name, line, problem),
     })
 }
 
-enum Failure {
-    Read(io::Error),
-    Line(Problem),
+impl Spheres {
+    /// Adds the spheres, read from the file at `path`, to a scene: all with one look, or each in its own colour.
+    ///
+    /// # Errors
+    /// More colours than can be numbered; the spheres are not added then.
+    pub fn add_to(self, scene: &mut Scene, look: Option<LookIndex>, path: &Path) -> Result<(), ImportError> {
+        let Self { spheres, color_indices, colors, notes } = self;
+        scene.warnings.extend(notes.into_iter().map(|note| format!("{}: {note}", file_name(path))));
+        let first = scene.colors.len();
+        let own = |index: u32| LookIndex::color(first + index as usize);
+        let looks: Option<Vec<_>> = color_indices.into_iter().map(|index| look.or_else(|| own(index))).collect();
+        let looks = looks.ok_or(FileProblem::TooManyColors)?;
+        if look.is_none() {
+            append(&mut scene.colors, colors);
+        }
+        append(&mut scene.spheres, spheres);
+        append(&mut scene.sphere_looks, looks);
+        Ok(())
+    }
 }
 
-impl From<Problem> for Failure {
-    fn from(problem: Problem) -> Self {
+/// Adds a list to another, without a copy if that one is empty.
+fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
+    if list.is_empty() { *list = more } else { list.extend(more) }
+}
+
+/// Why reading ended early.
+enum Broken {
+    Read(io::Error),
+    Line(LineProblem),
+}
+
+impl From<LineProblem> for Broken {
+    fn from(problem: LineProblem) -> Self {
         Self::Line(problem)
     }
 }
 
 /// Reads the file; on failure `line` is where.
 fn read_lines(
-    blocks: &mut Blocks<impl Read>,
+    blocks: &mut LineBlocks<impl Read>,
     length: u64,
     options: Options,
     line: &mut usize,
-) -> Result<Spheres, Failure> {
+) -> Result<Spheres, Broken> {
     *line = 1;
-    let mut header = without_mark(blocks.line()?).map_err(Problem::Utf16)?.to_vec();
+    let mut header = without_mark(blocks.line()?).map_err(LineProblem::Utf16)?.to_vec();
     while header.trim_ascii().is_empty() && !blocks.is_empty()? {
         *line += 1;
         header = blocks.line()?.to_vec();
     }
-    let expected = text(&header).parse::<u64>().map_err(|_| Problem::Count(shown(&header)))?;
+    let expected = text(&header).parse::<u64>().map_err(|_| LineProblem::Count(shown(&header)))?;
     *line += 1;
-    let layout = Layout::of(&String::from_utf8_lossy(blocks.line()?), options)?;
+    let layout = Columns::of(&String::from_utf8_lossy(blocks.line()?), options)?;
 
     let mut found = Spheres::default();
-    let no_memory = |_| Problem::Memory(expected);
+    let no_memory = |_| LineProblem::SphereMemory(expected);
     // An atom takes eight bytes at least, so a false count reserves no more than the file is worth.
     let likely = usize::try_from(expected.min(length / 8)).unwrap_or(0);
     found.spheres.try_reserve_exact(likely).map_err(no_memory)?;
@@ -219,7 +152,7 @@ fn read_lines(
     while (found.spheres.len() as u64) < expected {
         let block = blocks.next()?;
         if block.is_empty() {
-            return Err(Problem::Short { expected, found: found.spheres.len() as u64 }.into());
+            return Err(LineProblem::Short { expected, found: found.spheres.len() as u64 }.into());
         }
         let missing = usize::try_from(expected - found.spheres.len() as u64).unwrap_or(usize::MAX);
         let pieces = pieces(block, missing);
@@ -252,11 +185,11 @@ fn read_lines(
 struct Names(Vec<(Vec<u8>, u8)>);
 
 impl Names {
-    /// So many are told.
+    /// How many are listed.
     const TOLD: usize = 8;
 
-    /// Remembers a name. One more than is told is enough, here and in each piece of a file, so that what is told does not
-    /// depend on how it is cut.
+    /// Remembers a name. One more than is listed is enough, here and in each piece of a file, so that the list does not
+    /// depend on how the file is cut.
     fn add(&mut self, name: &[u8], element: u8) {
         if self.0.len() <= Self::TOLD && !self.0.iter().any(|(known, _)| known == name) {
             self.0.push((name.to_vec(), element));
@@ -287,7 +220,7 @@ fn pieces(block: &[u8], lines: usize) -> Vec<&[u8]> {
         pieces.push(piece);
         rest = later;
     }
-    // Lines behind the last atom are another frame or anything else, and not looked at.
+    // Lines after the last atom, another frame or anything else, are not read.
     let mut left = lines;
     for piece in &mut pieces {
         let count = piece.iter().filter(|&&byte| byte == b'\n').count();
@@ -301,23 +234,23 @@ fn pieces(block: &[u8], lines: usize) -> Vec<&[u8]> {
 }
 
 /// The source in blocks that end at a line's end.
-struct Blocks<R> {
+struct LineBlocks<R> {
     source: R,
-    /// What was read; from `start` on it has not been given out yet.
+    /// What was read; the bytes from `start` on are still to be returned.
     buffer: Vec<u8>,
     start: usize,
     ended: bool,
 }
 
-impl<R: Read> Blocks<R> {
+impl<R: Read> LineBlocks<R> {
     /// Fills the buffer up as far as the source goes.
-    fn fill(&mut self) -> Result<(), Failure> {
+    fn fill(&mut self) -> Result<(), Broken> {
         self.buffer.drain(..self.start);
         self.start = 0;
         let missing = BUFFER - self.buffer.len();
         if !self.ended && missing > 0 {
             let read = self.source.by_ref().take(missing as u64).read_to_end(&mut self.buffer);
-            self.ended = read.map_err(Failure::Read)? < missing;
+            self.ended = read.map_err(Broken::Read)? < missing;
             if self.ended && self.buffer.last().is_some_and(|&last| last != b'\n') {
                 self.buffer.push(b'\n');
             }
@@ -325,38 +258,48 @@ impl<R: Read> Blocks<R> {
         Ok(())
     }
 
-    /// Gives out whole lines, as many as the buffer holds; none at the end.
-    fn next(&mut self) -> Result<&[u8], Failure> {
+    /// Returns whole lines, as many as the buffer holds; none at the end.
+    fn next(&mut self) -> Result<&[u8], Broken> {
+        self.up_to(|bytes| bytes.iter().rposition(|&byte| byte == b'\n'))
+    }
+
+    /// Returns one line, without its end; an empty one at the end.
+    fn line(&mut self) -> Result<&[u8], Broken> {
+        let line = self.up_to(|bytes| bytes.iter().position(|&byte| byte == b'\n'))?;
+        Ok(line.strip_suffix(b"\n").unwrap_or(line))
+    }
+
+    /// Returns the bytes up to the line end that `find` finds in the buffer; none at the end.
+    fn up_to(&mut self, find: impl Fn(&[u8]) -> Option<usize>) -> Result<&[u8], Broken> {
         if !self.buffer[self.start..].contains(&b'\n') {
             self.fill()?;
         }
-        let block = &self.buffer[self.start..];
-        match block.iter().rposition(|&byte| byte == b'\n') {
-            Some(last) => {
-                let from = self.start;
-                self.start += last + 1;
+        let from = self.start;
+        match find(&self.buffer[from..]) {
+            Some(end) => {
+                self.start += end + 1;
                 Ok(&self.buffer[from..self.start])
             }
-            None if block.is_empty() => Ok(&[]),
-            None => Err(Problem::LongLine.into()),
+            None if self.buffer.len() == from => Ok(&[]),
+            None => Err(LineProblem::Long.into()),
         }
     }
 
-    /// Whether the source has been given out to its end.
-    fn is_empty(&mut self) -> Result<bool, Failure> {
+    /// Whether everything was returned.
+    fn is_empty(&mut self) -> Result<bool, Broken> {
         if self.buffer.len() == self.start {
             self.fill()?;
         }
         Ok(self.buffer.len() == self.start)
     }
 
-    /// Tells what follows the last atom, if it is more than space; `line` is the next one's number.
-    fn what_follows(&mut self, mut line: usize) -> Result<Option<String>, Failure> {
+    /// Says what follows the last atom, if it is more than space; `line` is the next one's number.
+    fn what_follows(&mut self, mut line: usize) -> Result<Option<String>, Broken> {
         while !self.is_empty()? {
             let found = match self.line() {
                 Ok(found) => found.trim_ascii(),
                 // A line without an end is something that follows too.
-                Err(Failure::Line(_)) => b"...",
+                Err(Broken::Line(_)) => b"...",
                 Err(failure) => return Err(failure),
             };
             if !found.is_empty() {
@@ -369,37 +312,21 @@ impl<R: Read> Blocks<R> {
         }
         Ok(None)
     }
-
-    /// Gives out one line, without its end; an empty one at the end.
-    fn line(&mut self) -> Result<&[u8], Failure> {
-        if !self.buffer[self.start..].contains(&b'\n') {
-            self.fill()?;
-        }
-        let from = self.start;
-        match self.buffer[from..].iter().position(|&byte| byte == b'\n') {
-            Some(length) => {
-                self.start = from + length + 1;
-                Ok(&self.buffer[from..from + length])
-            }
-            None if self.buffer.len() == from => Ok(&[]),
-            None => Err(Problem::LongLine.into()),
-        }
-    }
 }
 
 /// What decides an atom's colour.
 #[derive(Clone, Copy)]
-enum Paint {
+enum AtomColor {
     Element(u8),
     Color(DVec3),
     Nothing,
 }
 
-/// So many colours are remembered to be found again. A file with more has as good as one for each sphere, which is cheaper
-/// to keep, at 24 bytes, than to look up.
+/// This many colours are deduplicated. A file with more has about one for each sphere; storing 24 bytes is then cheaper
+/// than a look-up.
 const REMEMBERED: usize = 1 << 16;
 
-/// The numbers that colours have got so far.
+/// The indices of the colours so far.
 #[derive(Default)]
 struct Palette {
     elements: HashMap<u8, u32>,
@@ -409,14 +336,14 @@ struct Palette {
 }
 
 impl Palette {
-    fn index(&mut self, paint: Paint, colors: &mut Vec<DVec3>) -> Result<u32, Problem> {
+    fn index(&mut self, paint: AtomColor, colors: &mut Vec<DVec3>) -> Result<u32, LineProblem> {
         let color = match paint {
-            Paint::Element(element) => match self.elements.get(&element) {
+            AtomColor::Element(element) => match self.elements.get(&element) {
                 Some(&index) => return Ok(index),
                 None => elements::color(element),
             },
-            Paint::Color(color) => color,
-            Paint::Nothing => DVec3::splat(0.8),
+            AtomColor::Color(color) => color,
+            AtomColor::Nothing => DVec3::splat(0.8),
         };
         let bits = color.to_array().map(f64::to_bits);
         if let Some((_, index)) = self.last.filter(|(last, _)| *last == bits) {
@@ -425,8 +352,8 @@ impl Palette {
         let index = match self.colors.get(&bits) {
             Some(&index) => index,
             None => {
-                let next = u32::try_from(colors.len()).ok().filter(|&next| next < COLOR);
-                let next = next.ok_or(Problem::TooManyColors)?;
+                let next = u32::try_from(colors.len()).ok().filter(|&next| next < LookIndex::MOST);
+                let next = next.ok_or(LineProblem::TooManyColors)?;
                 colors.push(color);
                 if self.colors.len() < REMEMBERED {
                     self.colors.insert(bits, next);
@@ -434,7 +361,7 @@ impl Palette {
                 next
             }
         };
-        if let Paint::Element(element) = paint {
+        if let AtomColor::Element(element) = paint {
             self.elements.insert(element, index);
         }
         self.last = Some((bits, index));
@@ -443,7 +370,7 @@ impl Palette {
 }
 
 /// Which columns hold what.
-struct Layout {
+struct Columns {
     options: Options,
     position: usize,
     element: Option<usize>,
@@ -453,19 +380,19 @@ struct Layout {
     columns: usize,
 }
 
-/// What was read from a piece of a file: atoms, and what is wrong with the line behind them, if anything.
-struct Piece {
-    atoms: Vec<(Sphere, Paint)>,
+/// What was read from a piece of a file: atoms, and the error in the line after them, if any.
+struct AtomPiece {
+    atoms: Vec<(Sphere, AtomColor)>,
     names: Names,
-    problem: Option<Problem>,
+    problem: Option<LineProblem>,
 }
 
-impl Layout {
+impl Columns {
     /// Reads the comment line.
-    fn of(comment: &str, options: Options) -> Result<Self, Problem> {
+    fn of(comment: &str, options: Options) -> Result<Self, LineProblem> {
         let mut layout = Self { options, position: 1, element: Some(0), radius: None, color: None, columns: 4 };
         let Some(properties) = value(comment, "properties") else { return Ok(layout) };
-        let refuse = || Problem::Properties(shown(properties.as_bytes()));
+        let refuse = || LineProblem::Properties(shown(properties.as_bytes()));
         let fields: Vec<&str> = properties.split(':').collect();
         let mut position = None;
         (layout.element, layout.columns) = (None, 0);
@@ -487,23 +414,23 @@ impl Layout {
         let used = [Some(layout.position + 2), layout.element, layout.radius, layout.color.map(|at| at + 2)];
         layout.columns = used.into_iter().flatten().max().map_or(0, |last| last + 1);
         if layout.element.is_none() && layout.radius.is_none() && options.radius.is_none() {
-            return Err(Problem::NoRadius);
+            return Err(LineProblem::NoRadius);
         }
         Ok(layout)
     }
 
     /// Reads whole lines.
-    fn atoms(&self, lines: &[u8]) -> Piece {
+    fn atoms(&self, lines: &[u8]) -> AtomPiece {
         let mut atoms = Vec::with_capacity(lines.len() / 24);
         let mut columns = Vec::with_capacity(self.columns);
         let mut names = Names::default();
         for line in lines.split_inclusive(|&byte| byte == b'\n') {
             match self.atom(line, &mut columns, &mut names) {
                 Ok(atom) => atoms.push(atom),
-                Err(problem) => return Piece { atoms, names, problem: Some(problem) },
+                Err(problem) => return AtomPiece { atoms, names, problem: Some(problem) },
             }
         }
-        Piece { atoms, names, problem: None }
+        AtomPiece { atoms, names, problem: None }
     }
 
     /// Reads a line; `columns` is a place to work in.
@@ -512,35 +439,35 @@ impl Layout {
         line: &'a [u8],
         columns: &mut Vec<&'a [u8]>,
         names: &mut Names,
-    ) -> Result<(Sphere, Paint), Problem> {
+    ) -> Result<(Sphere, AtomColor), LineProblem> {
         columns.clear();
         columns.extend(Words(line).take(self.columns));
         if columns.len() < self.columns {
-            return Err(Problem::Columns { expected: self.columns, found: columns.len() });
+            return Err(LineProblem::Columns { expected: self.columns, found: columns.len() });
         }
-        let three = |at: usize| -> Result<DVec3, Problem> {
+        let three = |at: usize| -> Result<DVec3, LineProblem> {
             Ok(DVec3::new(number(columns[at])?, number(columns[at + 1])?, number(columns[at + 2])?))
         };
         let center = self.options.scale * three(self.position)?;
         if !center.is_finite() {
             let words = &columns[self.position..self.position + 3];
-            return Err(Problem::NotFinite { name: "position", found: shown(&words.join(&b' ')) });
+            return Err(LineProblem::NotFinite { name: "position", found: shown(&words.join(&b' ')) });
         }
         let color = self.color.map(three).transpose()?;
         if let Some(channel) = color.and_then(|color| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c))) {
-            return Err(Problem::Color(channel));
+            return Err(LineProblem::SphereColor(channel));
         }
         // An element has to be known only where something depends on it.
         let needed =
             (self.options.colored && color.is_none()) || (self.radius.is_none() && self.options.radius.is_none());
         let element = match self.element.filter(|_| needed) {
             Some(at) => match elements::find(columns[at]) {
-                Some(Found::Plain(element)) => Some(element),
-                Some(Found::Label(element)) => {
+                Some(ElementName::Plain(element)) => Some(element),
+                Some(ElementName::Label(element)) => {
                     names.add(columns[at], element);
                     Some(element)
                 }
-                None => return Err(Problem::Element(shown(columns[at]))),
+                None => return Err(LineProblem::Element(shown(columns[at]))),
             },
             None => None,
         };
@@ -548,17 +475,17 @@ impl Layout {
             (Some(at), ..) => number(columns[at])?,
             (None, Some(radius), _) => radius,
             (None, None, Some(element)) => elements::radius(element),
-            (None, None, None) => return Err(Problem::NoRadius),
+            (None, None, None) => return Err(LineProblem::NoRadius),
         };
         if radius < 0.0 {
-            return Err(Problem::Negative(radius));
+            return Err(LineProblem::NegativeRadius(radius));
         }
         let sphere = Sphere::new(center, self.options.scale * radius)
-            .ok_or_else(|| Problem::NotFinite { name: "radius", found: radius.to_string() })?;
+            .ok_or_else(|| LineProblem::NotFinite { name: "radius", found: radius.to_string() })?;
         let paint = match (color, element) {
-            (Some(color), _) => Paint::Color(color),
-            (None, Some(element)) if self.options.colored => Paint::Element(element),
-            (None, _) => Paint::Nothing,
+            (Some(color), _) => AtomColor::Color(color),
+            (None, Some(element)) if self.options.colored => AtomColor::Element(element),
+            (None, _) => AtomColor::Nothing,
         };
         Ok((sphere, paint))
     }
@@ -579,11 +506,7 @@ fn value<'a>(comment: &'a str, key: &str) -> Option<&'a str> {
     }
 }
 
-fn number(word: &[u8]) -> Result<f64, Problem> {
-    super::number(word).map_err(Problem::Number)
-}
-
-/// A line as text, for numbers; whatever is no UTF-8 is no number either.
+/// A line as text, for numbers; empty if it is not UTF-8.
 fn text(line: &[u8]) -> &str {
     std::str::from_utf8(line).unwrap_or("").trim()
 }
@@ -592,7 +515,7 @@ fn text(line: &[u8]) -> &str {
 mod tests {
     use super::*;
 
-    fn parse(text: &str, options: Options) -> Result<Spheres, XyzError> {
+    fn parse(text: &str, options: Options) -> Result<Spheres, ImportError> {
         read(text.as_bytes(), text.len() as u64, "atoms.xyz", options)
     }
 
@@ -646,7 +569,7 @@ mod tests {
         }
     }
 
-    /// A source that gives out few bytes at a time, as a pipe may.
+    /// A source that returns few bytes at a time, as a pipe may.
     struct Trickle<'a>(&'a [u8]);
 
     impl Read for Trickle<'_> {

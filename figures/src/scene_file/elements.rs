@@ -1,9 +1,9 @@
 //! Cuts a long scene into pieces that are parsed one after the other.
 //!
-//! A parsed table takes some thirty times the memory of its text, which is nothing for a scene written by hand and gigabytes
-//! for a million lights written by a program. Such a scene consists of `[[light]]`, `[[sphere]]` and `[[triangle]]` tables.
-//! They are cut out in groups, at the tables' headers, as the lexer of the TOML parser sees them: brackets in
-//! strings, comments and arrays of several lines are no headers.
+//! A parsed table takes some thirty times the memory of its text, which is nothing for a scene written by hand and
+//! gigabytes for a million lights written by a program. Such a scene consists of `[[light]]`, `[[sphere]]` and
+//! `[[triangle]]` tables. They are cut out in groups, at the tables' headers, as the lexer of the TOML parser sees
+//! them: brackets in strings, comments and arrays of several lines are no headers.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use toml_parser::lexer::TokenKind;
 const NAMES: [&str; 3] = ["light", "sphere", "triangle"];
 
 /// A text without its elements, and where they are.
-pub(super) struct Cut {
+pub(super) struct Sections {
     /// The text with spaces in place of the elements, so that all else keeps its place.
     pub(super) rest: String,
     /// The elements in groups, in order; each of these ranges of the text is a document of its own.
@@ -23,9 +23,9 @@ pub(super) struct Cut {
 
 /// Cuts the elements out of a scene, in groups of about `group` bytes; nothing is checked.
 ///
-/// `None` if an element is written as a value (`light = [..]`): TOML refuses that beside tables of the same name, which only
-/// who parses the whole can see.
-pub(super) fn cut(text: &str, group: usize) -> Option<Cut> {
+/// `None` if an element is written as a value (`light = [..]`): TOML refuses that beside tables of the same name, which
+/// only who parses the whole can see.
+pub(super) fn cut(text: &str, group: usize) -> Option<Sections> {
     let mut groups: Vec<Range<usize>> = Vec::new();
     // The last header, and which element it belongs to.
     let mut section: Option<(usize, Option<&str>)> = None;
@@ -65,7 +65,7 @@ pub(super) fn cut(text: &str, group: usize) -> Option<Cut> {
         rest[range.clone()].fill(b' ');
     }
     // Headers begin at characters, and so the ranges do.
-    Some(Cut { rest: String::from_utf8(rest).ok()?, groups })
+    Some(Sections { rest: String::from_utf8(rest).ok()?, groups })
 }
 
 /// The element to which a section belongs whose header starts `text`, after a section of the element `current`.
@@ -82,7 +82,7 @@ mod tests {
 
     /// The groups' texts.
     fn groups(text: &str, group: usize) -> Vec<&str> {
-        let Cut { rest, groups } = cut(text, group).unwrap();
+        let Sections { rest, groups } = cut(text, group).unwrap();
         assert_eq!(rest.len(), text.len());
         let kept = (0..text.len()).filter(|at| !groups.iter().any(|range| range.contains(at)));
         assert!(kept.into_iter().all(|at| rest.as_bytes()[at] == text.as_bytes()[at]));

@@ -1,12 +1,12 @@
 //! The weights of a triangle's vertices where a line meets it. A case is origin, direction and three vertices; the
 //! verdict is 1 if the line hits, boundary included; the values are the weights.
 
-use super::real::{Real, Vector, add, cross, dot, scaled, sub, vector};
+use super::method::{Answer, Method};
+use super::real::{Components, Float, add, cross, dot, scaled, sub, vector};
 use super::triangle::{crossing, hit_point, shapes, sheared_areas};
-use super::{Answer, Method};
 
 /// Returns the methods that weigh the vertices.
-pub(in super::super) fn barycentric() -> Vec<Method<15, 3>> {
+pub(crate) fn barycentric() -> Vec<Method<15, 3>> {
     vec![
         Method::new("Möller-Trumbore f32", "Möller, Trumbore 1997", moller_trumbore::<f32>),
         Method::new("Möller-Trumbore", "Möller, Trumbore 1997", moller_trumbore::<f64>),
@@ -25,7 +25,7 @@ fn answer(weights: Option<[f64; 3]>) -> Answer<3> {
     weights.map_or(Answer::without_values(0), |values| Answer { verdict: 1, values })
 }
 
-fn moller_trumbore<T: Real>(case: &[f64; 15]) -> Answer<3> {
+fn moller_trumbore<T: Float>(case: &[f64; 15]) -> Answer<3> {
     let vertices = [6, 9, 12].map(|from| vector::<T>(case, from));
     let found = crossing(vector(case, 0), vector(case, 3), vertices, 0.0);
     answer(found.map(|(_, u, v)| [T::of(1.0) - u - v, u, v].map(T::wide)))
@@ -33,7 +33,7 @@ fn moller_trumbore<T: Real>(case: &[f64; 15]) -> Answer<3> {
 
 /// The hit's point by the plane, then areas against the whole.
 fn areas(case: &[f64; 15]) -> Answer<3> {
-    let (origin, direction): (Vector<f64>, Vector<f64>) = (vector(case, 0), vector(case, 3));
+    let (origin, direction): (Components<f64>, Components<f64>) = (vector(case, 0), vector(case, 3));
     let [a, b, c] = [6, 9, 12].map(|from| vector::<f64>(case, from));
     let (t, normal) = hit_point(origin, direction, [a, b, c]);
     let point = add(origin, scaled(direction, t));

@@ -1,17 +1,17 @@
-//! The smallest sphere around eight spheres. A case is their centers and radii; the values are center and radius. Whether
-//! every sphere is inside is judged by the reference.
+//! The smallest sphere around eight spheres. A case is their centers and radii; the values are center and radius.
+//! Whether every sphere is inside is judged by the reference.
 
 use glam::DVec3;
 use rt_geom::{Sphere, enclosing_sphere};
 
+use super::method::{Answer, Method};
 use super::real::dvec3;
-use super::{Answer, Method};
 
 /// Spheres of one case.
-pub(in super::super) const COUNT: usize = 8;
+pub(crate) const COUNT: usize = 8;
 
 /// Returns the methods that enclose spheres; the values are center and radius.
-pub(in super::super) fn enclosing() -> Vec<Method<{ 4 * COUNT }, 4>> {
+pub(crate) fn enclosing() -> Vec<Method<{ 4 * COUNT }, 4>> {
     vec![
         Method::new("center of the box", "the center of the bounding box, the farthest point", box_center),
         Method::new("pair merging", "the smallest sphere around two, again and again", |case| {
@@ -28,19 +28,19 @@ fn shapes(case: &[f64; 4 * COUNT]) -> [Sphere; COUNT] {
     std::array::from_fn(|i| Sphere::new(dvec3(case, 4 * i), case[4 * i + 3]).expect("cases are valid spheres"))
 }
 
-type Ball = (DVec3, f64);
+type CenterAndRadius = (DVec3, f64);
 
-fn spheres(case: &[f64; 4 * COUNT]) -> impl Iterator<Item = Ball> + Clone {
+fn spheres(case: &[f64; 4 * COUNT]) -> impl Iterator<Item = CenterAndRadius> + Clone {
     (0..COUNT).map(|i| (dvec3(case, 4 * i), case[4 * i + 3]))
 }
 
-fn answer(ball: Option<Ball>) -> Answer<4> {
+fn answer(ball: Option<CenterAndRadius>) -> Answer<4> {
     let ((center, radius), verdict) = (ball.unwrap_or((DVec3::NAN, f64::NAN)), 1);
     Answer { verdict, values: [center.x, center.y, center.z, radius] }
 }
 
 /// The smallest sphere around two.
-fn merged((c, r): Ball, (d, s): Ball) -> Ball {
+fn merged((c, r): CenterAndRadius, (d, s): CenterAndRadius) -> CenterAndRadius {
     let distance = c.distance(d);
     if distance + s <= r {
         (c, r)
@@ -61,7 +61,7 @@ fn box_center(case: &[f64; 4 * COUNT]) -> Answer<4> {
 
 /// Starts with two that are far apart, then grows to take in each that sticks out.
 fn ritter(case: &[f64; 4 * COUNT]) -> Answer<4> {
-    let reach = |from: DVec3| move |(c, r): &Ball| from.distance(*c) + r;
+    let reach = |from: DVec3| move |(c, r): &CenterAndRadius| from.distance(*c) + r;
     let farthest = |from: DVec3| {
         spheres(case).max_by(|a, b| reach(from)(a).total_cmp(&reach(from)(b))).expect("there are spheres")
     };

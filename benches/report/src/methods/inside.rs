@@ -1,14 +1,14 @@
-//! Whether a point, projected orthogonally, lies in a triangle. A case is the point and three vertices; the verdict is 1
-//! inside, boundary included; there is no value.
+//! Whether a point, projected orthogonally, lies in a triangle. A case is the point and three vertices; the verdict is
+//! 1 inside, boundary included; there is no value.
 
 use glam::DVec3;
 use rt_geom::{Inside, Triangle, inside_triangle};
 
-use super::real::{Real, Vector, cross, dot, dvec3, sub, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Components, Float, cross, dot, dvec3, sub, vector};
 
 /// Returns the methods that tell whether a point is in a triangle.
-pub(in super::super) fn inside() -> Vec<Method<12, 0>> {
+pub(crate) fn inside() -> Vec<Method<12, 0>> {
     let verdict = |inside| Answer::without_values(u8::from(inside));
     let parts = |case: &[f64; 12]| (vector(case, 0), [3, 6, 9].map(|from| vector(case, from)));
     vec![
@@ -39,14 +39,14 @@ fn shapes(case: &[f64; 12]) -> (DVec3, Triangle) {
 }
 
 /// No turn of the three edges around the point is against the triangle's own.
-pub(super) fn orientations<T: Real>(point: Vector<T>, [a, b, c]: [Vector<T>; 3]) -> bool {
+pub(super) fn orientations<T: Float>(point: Components<T>, [a, b, c]: [Components<T>; 3]) -> bool {
     let normal = cross(sub(b, a), sub(c, a));
     let turn = |from, to| dot(normal, cross(sub(to, from), sub(point, from)));
     let zero = T::of(0.0);
     dot(normal, normal) > zero && turn(a, b) >= zero && turn(b, c) >= zero && turn(c, a) >= zero
 }
 
-fn barycentric(point: Vector<f64>, [a, b, c]: [Vector<f64>; 3]) -> bool {
+fn barycentric(point: Components<f64>, [a, b, c]: [Components<f64>; 3]) -> bool {
     let (e, f, p) = (sub(b, a), sub(c, a), sub(point, a));
     let (ee, ef, ff, pe, pf) = (dot(e, e), dot(e, f), dot(f, f), dot(p, e), dot(p, f));
     let determinant = ee * ff - ef * ef;

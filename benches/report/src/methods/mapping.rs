@@ -6,11 +6,11 @@ use std::f64::consts::{PI, TAU};
 use pxfm::{f_asin, f_atan2, f_hypot};
 use rt_shade::sphere_uv;
 
-use super::real::{Real, Vector, dvec3, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Components, Float, dvec3, vector};
 
 /// Returns the methods that give texture coordinates.
-pub(in super::super) fn mapping() -> Vec<Method<3, 2>> {
+pub(crate) fn mapping() -> Vec<Method<3, 2>> {
     vec![
         Method::new("textbook f32", "½ + atan2(z, x)/2π, ½ - asin(y)/π", textbook::<f32>),
         Method::new("textbook", "½ + atan2(z, x)/2π, ½ - asin(y)/π", textbook::<f64>),
@@ -24,12 +24,12 @@ pub(in super::super) fn mapping() -> Vec<Method<3, 2>> {
     ]
 }
 
-fn textbook<T: Real>(case: &[f64; 3]) -> Answer<2> {
+fn textbook<T: Float>(case: &[f64; 3]) -> Answer<2> {
     Answer { verdict: 0, values: textbook_coordinates(vector::<T>(case, 0)).map(T::wide) }
 }
 
 /// The textbook's `u` and `v` of a unit normal.
-pub(in super::super) fn textbook_coordinates<T: Real>([x, y, z]: Vector<T>) -> [T; 2] {
+pub(crate) fn textbook_coordinates<T: Float>([x, y, z]: Components<T>) -> [T; 2] {
     let (half, pi) = (T::of(0.5), T::of(PI));
     [half + z.atan2(x) / (pi + pi), half - y.asin() / pi]
 }

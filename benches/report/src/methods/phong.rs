@@ -4,15 +4,14 @@
 use glam::DVec3;
 use rt_shade::{Material, PointLight, phong as ours};
 
-use super::real::{Real, Vector, dot, dvec3, normalized, power, scaled, sub, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Components, Float, dot, dvec3, normalized, power, scaled, sub, vector};
 
 /// What the point is made of; the shininess is the case's.
-pub(in super::super) const MATERIAL: Material =
-    Material { ambient: 0.125, diffuse: 0.75, specular: 0.5, shininess: 1.0 };
+pub(crate) const MATERIAL: Material = Material { ambient: 0.125, diffuse: 0.75, specular: 0.5, shininess: 1.0 };
 
 /// Returns the methods that light a point.
-pub(in super::super) fn phong() -> Vec<Method<13, 1>> {
+pub(crate) fn phong() -> Vec<Method<13, 1>> {
     vec![
         Method::new("textbook f32", "Phong 1975: v/|v|, 2(n·l)n - l, repeated squaring", one_lamp::<f32>),
         Method::new("textbook", "Phong 1975: v/|v|, 2(n·l)n - l, repeated squaring", one_lamp::<f64>),
@@ -26,7 +25,7 @@ pub(in super::super) fn phong() -> Vec<Method<13, 1>> {
     ]
 }
 
-fn one_lamp<T: Real>(case: &[f64; 13]) -> Answer<1> {
+fn one_lamp<T: Float>(case: &[f64; 13]) -> Answer<1> {
     let [point, direction, normal, lamp] = [0, 3, 6, 9].map(|from| vector::<T>(case, from));
     let (diffuse, specular) = terms(point, direction, normal, lamp, case[12]);
     let [a, d, s] = [MATERIAL.ambient, MATERIAL.diffuse, MATERIAL.specular].map(T::of);
@@ -34,11 +33,11 @@ fn one_lamp<T: Real>(case: &[f64; 13]) -> Answer<1> {
 }
 
 /// The cosine and the power of Phong's diffuse and specular terms; both are zero where the light is behind the surface.
-pub(in super::super) fn terms<T: Real>(
-    point: Vector<T>,
-    direction: Vector<T>,
-    normal: Vector<T>,
-    lamp: Vector<T>,
+pub(crate) fn terms<T: Float>(
+    point: Components<T>,
+    direction: Components<T>,
+    normal: Components<T>,
+    lamp: Components<T>,
     shininess: f64,
 ) -> (T, T) {
     let zero = T::of(0.0);

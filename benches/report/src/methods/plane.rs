@@ -4,11 +4,11 @@
 use glam::DMat3;
 use rt_geom::{Triangle, plane_by_pseudo_inverse};
 
-use super::real::{Real, Vector, cross, dot, dvec3, sub, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Components, Float, cross, dot, dvec3, sub, vector};
 
 /// Returns the methods that find the plane.
-pub(in super::super) fn plane() -> Vec<Method<9, 3>> {
+pub(crate) fn plane() -> Vec<Method<9, 3>> {
     vec![
         Method::new("Cramer f32", "(q - p)×(r - p) over its product with p", cramer::<f32>),
         Method::new("Cramer", "(q - p)×(r - p) over its product with p", cramer::<f64>),
@@ -24,13 +24,13 @@ pub(in super::super) fn plane() -> Vec<Method<9, 3>> {
     ]
 }
 
-fn cramer<T: Real>(case: &[f64; 9]) -> Answer<3> {
+fn cramer<T: Float>(case: &[f64; 9]) -> Answer<3> {
     let vertices = [0, 3, 6].map(|from| vector::<T>(case, from));
     Answer { verdict: 0, values: plain_plane(vertices).map(T::wide) }
 }
 
 /// The plane's `(a, b, c)` in `ax + by + cz = 1`, by Cramer's rule.
-pub(super) fn plain_plane<T: Real>([p, q, r]: [Vector<T>; 3]) -> Vector<T> {
+pub(super) fn plain_plane<T: Float>([p, q, r]: [Components<T>; 3]) -> Components<T> {
     let normal = cross(sub(q, p), sub(r, p));
     let offset = dot(normal, p);
     normal.map(|x| x / offset)

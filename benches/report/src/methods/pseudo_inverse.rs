@@ -1,14 +1,14 @@
-//! The pseudo-inverse of a 3x3 matrix. A case is the matrix by columns; the verdict is the rank; the values are the nine
-//! entries by columns.
+//! The pseudo-inverse of a 3x3 matrix. A case is the matrix by columns; the verdict is the rank; the values are the
+//! nine entries by columns.
 
 use glam::DMat3;
 use rt_math::{pseudo_inverse as ours, pseudo_inverse_with_tolerance};
 
-use super::real::{Real, cross, dot, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Float, cross, dot, vector};
 
 /// Returns the methods that give a pseudo-inverse.
-pub(in super::super) fn pseudo_inverse() -> Vec<Method<9, 9>> {
+pub(crate) fn pseudo_inverse() -> Vec<Method<9, 9>> {
     vec![
         Method::new("adjugate f32", "adj A / det A", adjugate::<f32>),
         Method::new("adjugate", "adj A / det A", adjugate::<f64>),
@@ -31,7 +31,7 @@ fn answer(rank: usize, values: [f64; 9]) -> Answer<9> {
 /// What is no rank: the method has no answer for a singular matrix.
 const NO_ANSWER: u8 = 9;
 
-fn adjugate<T: Real>(case: &[f64; 9]) -> Answer<9> {
+fn adjugate<T: Float>(case: &[f64; 9]) -> Answer<9> {
     let [a, b, c] = [0, 3, 6].map(|from| vector::<T>(case, from));
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
     let determinant = dot(a, bc);

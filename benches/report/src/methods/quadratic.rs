@@ -1,13 +1,13 @@
-//! Real roots of `a x² + b x + c`. A case is `a, b, c`; the verdict is the number of roots (3: every number); the values
-//! are the roots in ascending order.
+//! Real roots of `a x² + b x + c`. A case is `a, b, c`; the verdict is the number of roots (3: every number); the
+//! values are the roots in ascending order.
 
 use rt_math::{Roots, solve_quadratic};
 
-use super::real::Real;
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::Float;
 
 /// Returns the methods that solve a quadratic.
-pub(in super::super) fn quadratic() -> Vec<Method<3, 2>> {
+pub(crate) fn quadratic() -> Vec<Method<3, 2>> {
     vec![
         Method::new("textbook f32", "(-b ± √(b² - 4ac)) / 2a", textbook::<f32>),
         Method::new("textbook", "(-b ± √(b² - 4ac)) / 2a", textbook::<f64>),
@@ -40,7 +40,7 @@ fn ascending(x: f64, y: f64) -> Roots {
     if x < y { Roots::Two(x, y) } else { Roots::Two(y, x) }
 }
 
-fn textbook<T: Real>(&[a, b, c]: &[f64; 3]) -> Answer<2> {
+fn textbook<T: Float>(&[a, b, c]: &[f64; 3]) -> Answer<2> {
     let (a, b, c, zero) = (T::of(a), T::of(b), T::of(c), T::of(0.0));
     if a == zero {
         return answer(linear(b.wide(), c.wide()));

@@ -1,13 +1,14 @@
 //! Single and double precision, for methods that are compared in both.
 //!
-//! Angles are the crate pxfm's, correctly rounded, and not the system library's: its last bits are not the same everywhere.
+//! Angles are the crate pxfm's, correctly rounded, and not the system library's: its last bits are not the same
+//! everywhere.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::DVec3;
 
 /// A floating-point number.
-pub(in super::super) trait Real:
+pub(crate) trait Float:
     Copy
     + PartialOrd
     + Add<Output = Self>
@@ -33,7 +34,7 @@ pub(in super::super) trait Real:
 
 macro_rules! real {
     ($float:ident, $atan2:ident, $asin:ident) => {
-        impl Real for $float {
+        impl Float for $float {
             #[allow(clippy::cast_possible_truncation, clippy::unnecessary_cast, reason = "narrowing is the point")]
             fn of(x: f64) -> Self {
                 x as $float
@@ -70,46 +71,46 @@ real!(f32, f_atan2f, f_asinf);
 real!(f64, f_atan2, f_asin);
 
 /// A vector with components of either precision.
-pub(in super::super) type Vector<T> = [T; 3];
+pub(crate) type Components<T> = [T; 3];
 
 /// Returns components `from`, `from + 1` and `from + 2` of a case.
-pub(in super::super) fn vector<T: Real>(case: &[f64], from: usize) -> Vector<T> {
+pub(crate) fn vector<T: Float>(case: &[f64], from: usize) -> Components<T> {
     [case[from], case[from + 1], case[from + 2]].map(T::of)
 }
 
 /// Returns the same components as a vector of glam's.
-pub(in super::super) fn dvec3(case: &[f64], from: usize) -> DVec3 {
+pub(crate) fn dvec3(case: &[f64], from: usize) -> DVec3 {
     DVec3::new(case[from], case[from + 1], case[from + 2])
 }
 
-pub(in super::super) fn sub<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+pub(crate) fn sub<T: Float>(a: Components<T>, b: Components<T>) -> Components<T> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(in super::super) fn add<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+pub(crate) fn add<T: Float>(a: Components<T>, b: Components<T>) -> Components<T> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(in super::super) fn scaled<T: Real>(a: Vector<T>, s: T) -> Vector<T> {
+pub(crate) fn scaled<T: Float>(a: Components<T>, s: T) -> Components<T> {
     a.map(|x| x * s)
 }
 
-pub(in super::super) fn dot<T: Real>(a: Vector<T>, b: Vector<T>) -> T {
+pub(crate) fn dot<T: Float>(a: Components<T>, b: Components<T>) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(in super::super) fn cross<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+pub(crate) fn cross<T: Float>(a: Components<T>, b: Components<T>) -> Components<T> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// A vector divided by its length.
-pub(in super::super) fn normalized<T: Real>(a: Vector<T>) -> Vector<T> {
+pub(crate) fn normalized<T: Float>(a: Components<T>) -> Components<T> {
     let length = dot(a, a).sqrt();
     a.map(|x| x / length)
 }
 
 /// The power with a whole exponent, by repeated squaring: the same bits on every platform.
-pub(in super::super) fn power<T: Real>(base: T, exponent: f64) -> T {
+pub(crate) fn power<T: Float>(base: T, exponent: f64) -> T {
     let (mut result, mut square, mut rest) = (T::of(1.0), base, exponent);
     while rest >= 1.0 {
         if rest % 2.0 >= 1.0 {

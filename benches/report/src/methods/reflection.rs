@@ -1,13 +1,13 @@
-//! A vector mirrored in a plane. A case is the vector and a normal that is not zero; there is no verdict; the values are
-//! the components.
+//! A vector mirrored in a plane. A case is the vector and a normal that is not zero; there is no verdict; the values
+//! are the components.
 
 use rt_math::reflect;
 
-use super::real::{Real, dot, dvec3, scaled, sub, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Float, dot, dvec3, scaled, sub, vector};
 
 /// Returns the methods that mirror a vector.
-pub(in super::super) fn reflection() -> Vec<Method<6, 3>> {
+pub(crate) fn reflection() -> Vec<Method<6, 3>> {
     vec![
         Method::new("unit normal f32", "v - 2 (v·n) n", unit::<f32>),
         Method::new("unit normal", "v - 2 (v·n) n", unit::<f64>),
@@ -17,12 +17,12 @@ pub(in super::super) fn reflection() -> Vec<Method<6, 3>> {
     ]
 }
 
-fn unit<T: Real>(case: &[f64; 6]) -> Answer<3> {
+fn unit<T: Float>(case: &[f64; 6]) -> Answer<3> {
     let (v, n) = (vector::<T>(case, 0), vector(case, 3));
     Answer { verdict: 0, values: sub(v, scaled(n, T::of(2.0) * dot(v, n))).map(T::wide) }
 }
 
-fn any<T: Real>(case: &[f64; 6]) -> Answer<3> {
+fn any<T: Float>(case: &[f64; 6]) -> Answer<3> {
     let (v, n) = (vector::<T>(case, 0), vector(case, 3));
     let factor = T::of(2.0) * (dot(v, n) / dot(n, n));
     Answer { verdict: 0, values: sub(v, scaled(n, factor)).map(T::wide) }

@@ -3,11 +3,11 @@
 
 use rt_geom::{Ray, Sphere};
 
-use super::real::{Real, Vector, add, dot, dvec3, scaled, sub, vector};
-use super::{Answer, Method};
+use super::method::{Answer, Method};
+use super::real::{Components, Float, add, dot, dvec3, scaled, sub, vector};
 
 /// Returns the methods that intersect a ray with a sphere.
-pub(in super::super) fn sphere() -> Vec<Method<10, 1>> {
+pub(crate) fn sphere() -> Vec<Method<10, 1>> {
     vec![
         Method::new("textbook f32", "(-b ± √(b² - ac)) / a", textbook::<f32>),
         Method::new("textbook", "(-b ± √(b² - ac)) / a", textbook::<f64>),
@@ -33,7 +33,7 @@ fn hit(t: Option<f64>) -> Answer<1> {
 }
 
 /// The smaller of two parameters that is not negative; NaN is a miss.
-fn nearest<T: Real>(near: T, far: T) -> Answer<1> {
+fn nearest<T: Float>(near: T, far: T) -> Answer<1> {
     let zero = T::of(0.0);
     if near >= zero {
         hit(Some(near.wide()))
@@ -44,27 +44,27 @@ fn nearest<T: Real>(near: T, far: T) -> Answer<1> {
     }
 }
 
-struct Problem<T> {
-    direction: Vector<T>,
+struct RayAndSphere<T> {
+    direction: Components<T>,
     /// From the center to the origin of the ray.
-    offset: Vector<T>,
+    offset: Components<T>,
     radius: T,
 }
 
-impl<T: Real> Problem<T> {
+impl<T: Float> RayAndSphere<T> {
     fn new(case: &[f64; 10]) -> Self {
         let offset = sub(vector::<T>(case, 0), vector(case, 6));
         Self { direction: vector(case, 3), offset, radius: T::of(case[9]) }
     }
 }
 
-fn textbook<T: Real>(case: &[f64; 10]) -> Answer<1> {
-    let Problem { direction, offset, radius } = Problem::<T>::new(case);
+fn textbook<T: Float>(case: &[f64; 10]) -> Answer<1> {
+    let RayAndSphere { direction, offset, radius } = RayAndSphere::<T>::new(case);
     textbook_roots(direction, offset, radius).map_or(hit(None), |[near, far]| nearest(near, far))
 }
 
 /// The textbook's two roots, if it finds any; `offset` leads from the center to the origin of the ray.
-pub(in super::super) fn textbook_roots<T: Real>(direction: Vector<T>, offset: Vector<T>, radius: T) -> Option<[T; 2]> {
+pub(crate) fn textbook_roots<T: Float>(direction: Components<T>, offset: Components<T>, radius: T) -> Option<[T; 2]> {
     let (a, b) = (dot(direction, direction), dot(direction, offset));
     let discriminant = b * b - a * (dot(offset, offset) - radius * radius);
     if discriminant < T::of(0.0) {
@@ -74,16 +74,16 @@ pub(in super::super) fn textbook_roots<T: Real>(direction: Vector<T>, offset: Ve
     Some([(-b - root) / a, (-b + root) / a])
 }
 
-fn q_form<T: Real>(case: &[f64; 10]) -> Answer<1> {
-    let Problem { direction, offset, radius } = Problem::<T>::new(case);
+fn q_form<T: Float>(case: &[f64; 10]) -> Answer<1> {
+    let RayAndSphere { direction, offset, radius } = RayAndSphere::<T>::new(case);
     let (a, b) = (dot(direction, direction), dot(direction, offset));
     let c = dot(offset, offset) - radius * radius;
     roots_from_q(a, b, c, b * b - a * c)
 }
 
 /// The discriminant from the distance between center and line, so that `|offset|²` never enters it.
-fn gems<T: Real>(case: &[f64; 10]) -> Answer<1> {
-    let Problem { direction, offset, radius } = Problem::<T>::new(case);
+fn gems<T: Float>(case: &[f64; 10]) -> Answer<1> {
+    let RayAndSphere { direction, offset, radius } = RayAndSphere::<T>::new(case);
     let (a, b) = (dot(direction, direction), dot(direction, offset));
     let perpendicular = sub(offset, scaled(direction, b / a));
     let reduced = radius * radius - dot(perpendicular, perpendicular);
@@ -91,7 +91,7 @@ fn gems<T: Real>(case: &[f64; 10]) -> Answer<1> {
     roots_from_q(a, b, c, a * reduced)
 }
 
-fn roots_from_q<T: Real>(a: T, b: T, c: T, discriminant: T) -> Answer<1> {
+fn roots_from_q<T: Float>(a: T, b: T, c: T, discriminant: T) -> Answer<1> {
     if discriminant < T::of(0.0) {
         return hit(None);
     }
@@ -101,8 +101,8 @@ fn roots_from_q<T: Real>(a: T, b: T, c: T, discriminant: T) -> Answer<1> {
 }
 
 /// Half a chord on either side of the point of the line that is nearest to the center.
-fn projection<T: Real>(case: &[f64; 10]) -> Answer<1> {
-    let Problem { direction, offset, radius } = Problem::<T>::new(case);
+fn projection<T: Float>(case: &[f64; 10]) -> Answer<1> {
+    let RayAndSphere { direction, offset, radius } = RayAndSphere::<T>::new(case);
     let a = dot(direction, direction);
     let middle = -dot(direction, offset) / a;
     let perpendicular = add(offset, scaled(direction, middle));

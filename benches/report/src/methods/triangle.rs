@@ -4,12 +4,12 @@
 use rt_geom::{Ray, Triangle};
 
 use super::inside::orientations;
+use super::method::{Answer, Method};
 use super::plane::plain_plane;
-use super::real::{Real, Vector, add, cross, dot, dvec3, scaled, sub, vector};
-use super::{Answer, Method};
+use super::real::{Components, Float, add, cross, dot, dvec3, scaled, sub, vector};
 
 /// Returns the methods that intersect a ray with a triangle.
-pub(in super::super) fn triangle() -> Vec<Method<15, 1>> {
+pub(crate) fn triangle() -> Vec<Method<15, 1>> {
     vec![
         Method::new("Möller-Trumbore f32", "Möller, Trumbore 1997", |case| moller_trumbore::<f32>(case, 0.0)),
         Method::new("Möller-Trumbore", "Möller, Trumbore 1997", |case| moller_trumbore::<f64>(case, 0.0)),
@@ -37,17 +37,17 @@ fn hit(t: Option<f64>) -> Answer<1> {
     t.filter(|&t| t >= 0.0).map_or(Answer::without_values(0), |t| Answer { verdict: 1, values: [t] })
 }
 
-fn moller_trumbore<T: Real>(case: &[f64; 15], tolerance: f64) -> Answer<1> {
+fn moller_trumbore<T: Float>(case: &[f64; 15], tolerance: f64) -> Answer<1> {
     let vertices = [6, 9, 12].map(|from| vector::<T>(case, from));
     let found = crossing(vector(case, 0), vector(case, 3), vertices, tolerance);
     hit(found.map(|(t, _, _)| t.wide()))
 }
 
 /// Möller and Trumbore's `t` and the weights of the second and the third vertex, if the line hits.
-pub(in super::super) fn crossing<T: Real>(
-    origin: Vector<T>,
-    direction: Vector<T>,
-    [a, b, c]: [Vector<T>; 3],
+pub(crate) fn crossing<T: Float>(
+    origin: Components<T>,
+    direction: Components<T>,
+    [a, b, c]: [Components<T>; 3],
     tolerance: f64,
 ) -> Option<(T, T, T)> {
     let (edge_1, edge_2) = (sub(b, a), sub(c, a));
@@ -73,7 +73,7 @@ pub(in super::super) fn crossing<T: Real>(
 
 /// The ray becomes the z axis by a shear; the signs of three areas decide.
 fn woop(case: &[f64; 15]) -> Answer<1> {
-    let (origin, d): (Vector<f64>, Vector<f64>) = (vector(case, 0), vector(case, 3));
+    let (origin, d): (Components<f64>, Components<f64>) = (vector(case, 0), vector(case, 3));
     let [u, v, w] = sheared_areas(case);
     if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
         return hit(None);
@@ -88,7 +88,7 @@ fn woop(case: &[f64; 15]) -> Answer<1> {
 }
 
 /// The axes in an order that keeps turns as they are and has the direction's longest last.
-fn axes(d: Vector<f64>) -> [usize; 3] {
+fn axes(d: Components<f64>) -> [usize; 3] {
     let size = d.map(f64::abs);
     let z = if size[0] > size[1] {
         if size[0] > size[2] { 0 } else { 2 }
@@ -103,7 +103,7 @@ fn axes(d: Vector<f64>) -> [usize; 3] {
 
 /// The areas opposite to the vertices, as the sheared ray sees them.
 pub(super) fn sheared_areas(case: &[f64; 15]) -> [f64; 3] {
-    let (origin, d): (Vector<f64>, Vector<f64>) = (vector(case, 0), vector(case, 3));
+    let (origin, d): (Components<f64>, Components<f64>) = (vector(case, 0), vector(case, 3));
     let [x, y, z] = axes(d);
     let (shear_x, shear_y) = (d[x] / d[z], d[y] / d[z]);
     let [(ax, ay), (bx, by), (cx, cy)] = [6, 9, 12].map(|from| {
@@ -115,17 +115,17 @@ pub(super) fn sheared_areas(case: &[f64; 15]) -> [f64; 3] {
 
 /// Where a line meets the plane of a triangle, and the plane's normal.
 pub(super) fn hit_point(
-    origin: Vector<f64>,
-    direction: Vector<f64>,
-    [a, b, c]: [Vector<f64>; 3],
-) -> (f64, Vector<f64>) {
+    origin: Components<f64>,
+    direction: Components<f64>,
+    [a, b, c]: [Components<f64>; 3],
+) -> (f64, Components<f64>) {
     let normal = cross(sub(b, a), sub(c, a));
     (dot(normal, sub(a, origin)) / dot(normal, direction), normal)
 }
 
 /// The plane as `ax + by + cz = 1`, the point where the ray meets it, then three orientations.
 fn plane_form(case: &[f64; 15]) -> Answer<1> {
-    let (origin, direction): (Vector<f64>, Vector<f64>) = (vector(case, 0), vector(case, 3));
+    let (origin, direction): (Components<f64>, Components<f64>) = (vector(case, 0), vector(case, 3));
     let vertices = [6, 9, 12].map(|from| vector(case, from));
     let plane = plain_plane(vertices);
     let t = (1.0 - dot(plane, origin)) / dot(plane, direction);

@@ -1,10 +1,12 @@
 //! Whole pictures: how many pixels each method gets wrong, and how many rays it casts in a second.
 //!
-//! A pixel is wrong if one of its three 8-bit samples is not that of the [exact] picture. The scenes are the six figures,
-//! a crowd of spheres, and three on which rounding shows; of those the pictures themselves are kept.
+//! A pixel is wrong if one of its three 8-bit samples is not that of the [exact] picture. The scenes are the six
+//! figures, a crowd of spheres, and three on which rounding shows; of those the pictures themselves are kept.
 
 mod exact;
+mod pixels;
 pub(super) mod plot;
+mod results;
 mod textbook;
 
 use std::hint::black_box;
@@ -17,47 +19,13 @@ use figures::generate::sphereflake;
 use figures::render::{AHEAD, Renderer};
 use figures::scene::{Look, Scene};
 use figures::scene_file;
-use glam::DVec3;
 use rt_geom::{Bvh, Hit, Ray, Sphere};
-use rt_io::{Pixmap, png};
-use rt_shade::color::{clamp, to_sample};
-use serde::{Deserialize, Serialize};
 
-use super::measure::{Effort, Time, take_turns};
-use super::progress;
+use super::measure::{Effort, take_turns};
+use super::progress::progress;
+use pixels::{Samples8, as_png, paint};
+pub(super) use results::{Group, Painted, Pictured};
 use textbook::Painter;
-
-/// What was measured of all methods on one scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Pictured {
-    pub(super) scene: String,
-    pub(super) group: Group,
-    pub(super) objects: usize,
-    pub(super) width: u32,
-    pub(super) height: u32,
-    pub(super) methods: Vec<Painted>,
-}
-
-/// What a scene is there for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Group {
-    Figures,
-    Crowd,
-    Hard,
-}
-
-/// What was measured of one method on one scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Painted {
-    pub(super) method: String,
-    pub(super) ours: bool,
-    pub(super) wrong_pixels: usize,
-    /// Nanoseconds for one ray, shading included, on one thread.
-    pub(super) time: Time,
-    /// The picture as PNG in base64, where it is worth a look.
-    pub(super) png: Option<String>,
-}
 
 /// The methods whose pictures are kept, side by side.
 pub(super) const SHOWN: [&str; 2] = ["textbook", "ours, batch"];
@@ -102,21 +70,18 @@ pub(super) fn pictures(effort: Effort) -> Vec<Pictured> {
 
 /// A sphereflake of three generations, lit as any file of spheres is.
 fn crowd() -> Scene {
-    let mut scene = Scene::empty();
-    for (look, ball) in (0..).zip(sphereflake(3)) {
+    let mut scene = Scene::default();
+    for ball in sphereflake(3) {
         scene.spheres.push(Sphere::new(ball.center, ball.radius).expect("a sphereflake's radii are positive"));
-        scene.sphere_looks.push(look);
-        scene.looks.push(Look::colored(ball.color));
+        let look = scene.add_look(Look::colored(ball.color));
+        scene.sphere_looks.push(look.expect("there are few looks"));
     }
     scene.set_stage();
     scene
 }
 
-/// A picture's samples, row by row.
-type Samples = Vec<u8>;
-
 /// Draws a picture.
-type Draw<'a> = Box<dyn Fn() -> Samples + Sync + 'a>;
+type Draw<'a> = Box<dyn Fn() -> Samples8 + Sync + 'a>;
 
 fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) -> Pictured {
     progress(name);
@@ -140,7 +105,7 @@ fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) 
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
     let rays = truth.len() / 3;
     let (found, times) = alone.install(|| {
-        let found: Vec<Samples> = methods.iter().map(|(_, _, draw)| draw()).collect();
+        let found: Vec<Samples8> = methods.iter().map(|(_, _, draw)| draw()).collect();
         let times = take_turns(methods.len(), rays, effort, |i| drop(black_box(methods[i].2())));
         (found, times)
     });
@@ -156,18 +121,6 @@ fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) 
     Pictured { scene: name.to_owned(), group, objects, width: size.width, height: size.height, methods }
 }
 
-/// Draws a picture ray by ray.
-fn paint(view: &View, color: impl Fn(&Ray) -> DVec3) -> Samples {
-    let Size { width, height, .. } = view.size();
-    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-    pixels.flat_map(|(column, row)| samples(color(&view.ray(column, row)))).collect()
-}
-
-/// The three samples of a pixel.
-fn samples(color: DVec3) -> [u8; 3] {
-    clamp(color).to_array().map(|c| u8::try_from(to_sample(c, 255)).expect("a sample is at most maxval"))
-}
-
 /// The closest hit, by asking every object.
 fn plain(scene: &Scene, ray: &Ray) -> Option<Hit> {
     let spheres = scene.spheres.iter().map(|sphere| sphere.closest(ray, AHEAD));
@@ -178,17 +131,9 @@ fn plain(scene: &Scene, ray: &Ray) -> Option<Hit> {
 }
 
 /// Draws as the program does.
-fn batch(renderer: &Renderer, view: &View) -> Samples {
+fn batch(renderer: &Renderer, view: &View) -> Samples8 {
     let rows = renderer.rows(view, 0..view.size().height, 255, &|_| ());
     rows.samples.into_iter().map(|sample| u8::try_from(sample).expect("a sample is at most maxval")).collect()
-}
-
-fn as_png(samples: Samples, Size { width, height, .. }: Size) -> Vec<u8> {
-    let samples = samples.into_iter().map(u16::from).collect();
-    let pixmap = Pixmap::new(width as usize, height as usize, 255, samples).expect("as many samples as pixels");
-    let mut bytes = Vec::new();
-    png::write(&pixmap, &mut bytes).expect("a vector takes every byte");
-    bytes
 }
 
 #[cfg(test)]

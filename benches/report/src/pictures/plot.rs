@@ -2,33 +2,33 @@
 
 use std::fmt::Write;
 
-use super::{Group, Pictured};
+use super::results::{Group, Pictured};
 use crate::labels::Labels;
-use crate::plot::{escape, style};
+use crate::svg::{escape, style};
 
 /// A method's sums over a group of scenes.
-pub(in super::super) struct Total {
-    pub(in super::super) method: String,
-    pub(in super::super) ours: bool,
-    pub(in super::super) wrong: usize,
-    pub(in super::super) pixels: usize,
+pub(crate) struct Total {
+    pub(crate) method: String,
+    pub(crate) ours: bool,
+    pub(crate) wrong: usize,
+    pub(crate) pixels: usize,
     seconds: f64,
 }
 
 impl Total {
     /// Rays in a second, in millions.
-    pub(in super::super) fn speed(&self) -> f64 {
+    pub(crate) fn speed(&self) -> f64 {
         self.pixels as f64 / self.seconds / 1e6
     }
 
     /// Wrong pixels in a million.
-    pub(in super::super) fn wrong_in_a_million(&self) -> f64 {
+    pub(crate) fn wrong_in_a_million(&self) -> f64 {
         1e6 * self.wrong as f64 / self.pixels as f64
     }
 }
 
 /// Adds up the scenes of a group for each method.
-pub(in super::super) fn totals(pictures: &[Pictured], group: Group) -> Vec<Total> {
+pub(crate) fn totals(pictures: &[Pictured], group: Group) -> Vec<Total> {
     let mut totals: Vec<Total> = Vec::new();
     for pictured in pictures.iter().filter(|pictured| pictured.group == group) {
         let pixels = pictured.width as usize * pictured.height as usize;
@@ -56,7 +56,7 @@ const BOTTOM: f64 = 366.0;
 const COLUMN: f64 = 46.0;
 
 /// Returns the diagram.
-pub(in super::super) fn plot(pictures: &[Pictured]) -> String {
+pub(crate) fn plot(pictures: &[Pictured]) -> String {
     let groups = [Group::Figures, Group::Crowd, Group::Hard].map(|group| (group, totals(pictures, group)));
     let speeds = groups.iter().flat_map(|(_, totals)| totals).map(Total::speed);
     let (low, high) = speeds.fold((f64::MAX, f64::MIN), |(low, high), speed| (low.min(speed), high.max(speed)));

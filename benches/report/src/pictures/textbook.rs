@@ -3,15 +3,15 @@
 use glam::DVec3;
 use rt_geom::{Ray, Sphere, Triangle};
 
-use crate::methods::real::{Real, Vector, add, cross, normalized, scaled, sub};
+use crate::methods::real::{Components, Float, add, cross, normalized, scaled, sub};
 use crate::methods::{crossing, terms, textbook_coordinates, textbook_roots};
 use figures::scene::{Filter, Look, Paint, Scene};
 
 /// A scene's objects in one precision.
 pub(super) struct Painter<'a, T> {
     scene: &'a Scene,
-    spheres: Vec<(Vector<T>, T)>,
-    triangles: Vec<[Vector<T>; 3]>,
+    spheres: Vec<(Components<T>, T)>,
+    triangles: Vec<[Components<T>; 3]>,
 }
 
 /// What is seen, at which `t`.
@@ -22,11 +22,11 @@ struct Seen<T> {
     weights: [T; 2],
 }
 
-fn narrow<T: Real>(v: DVec3) -> Vector<T> {
+fn narrow<T: Float>(v: DVec3) -> Components<T> {
     v.to_array().map(T::of)
 }
 
-impl<'a, T: Real> Painter<'a, T> {
+impl<'a, T: Float> Painter<'a, T> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let ball = |sphere: &Sphere| (narrow(sphere.center()), T::of(sphere.radius()));
         let corners = |triangle: &Triangle| triangle.vertices().map(narrow);
@@ -46,7 +46,8 @@ impl<'a, T: Real> Painter<'a, T> {
         let point = add(origin, scaled(direction, seen.t));
         match self.spheres.get(seen.index) {
             Some(&(center, _)) => {
-                let look = &self.scene.looks[self.scene.sphere_looks[seen.index] as usize];
+                let look =
+                    self.scene.look(self.scene.sphere_looks[seen.index]).expect("a sphere of these scenes has a look");
                 let normal = normalized(sub(point, center));
                 let surface = match &look.paint {
                     Paint::Color(color) => narrow(*color),
@@ -64,7 +65,7 @@ impl<'a, T: Real> Painter<'a, T> {
             None => {
                 let index = seen.index - self.spheres.len();
                 let [a, b, c] = self.triangles[index];
-                let look = &self.scene.looks[self.scene.triangle_looks[index] as usize];
+                let look = self.scene.look(self.scene.triangle_looks[index]).expect("a triangle has a look");
                 let surface = match (self.scene.vertex_colors.get(index), &look.paint) {
                     (Some(Some(colors)), _) => {
                         let [u, v] = seen.weights;
@@ -79,7 +80,7 @@ impl<'a, T: Real> Painter<'a, T> {
         }
     }
 
-    fn closest(&self, origin: Vector<T>, direction: Vector<T>) -> Option<Seen<T>> {
+    fn closest(&self, origin: Components<T>, direction: Components<T>) -> Option<Seen<T>> {
         let zero = T::of(0.0);
         let mut best: Option<Seen<T>> = None;
         let mut offer = |t: T, index: usize, weights: [T; 2]| {
@@ -100,13 +101,20 @@ impl<'a, T: Real> Painter<'a, T> {
         best
     }
 
-    fn lit(&self, point: Vector<T>, direction: Vector<T>, normal: Vector<T>, surface: Vector<T>, look: &Look) -> DVec3 {
+    fn lit(
+        &self,
+        point: Components<T>,
+        direction: Components<T>,
+        normal: Components<T>,
+        surface: Components<T>,
+        look: &Look,
+    ) -> DVec3 {
         let material = &look.material;
         let mut color = scaled(surface, T::of(material.ambient));
         for lamp in &self.scene.lights {
             let (diffuse, specular) = terms(point, direction, normal, narrow(lamp.position), material.shininess);
             let (diffuse, specular) = (T::of(material.diffuse) * diffuse, T::of(material.specular) * specular);
-            let light: Vector<T> = narrow(lamp.color);
+            let light: Components<T> = narrow(lamp.color);
             color = [0, 1, 2].map(|i| color[i] + (diffuse * surface[i] + specular) * light[i]);
         }
         DVec3::from_array((if self.scene.lights.is_empty() { surface } else { color }).map(T::wide))

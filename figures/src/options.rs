@@ -1,0 +1,93 @@
+//! What the command line says about a picture.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+
+use crate::output::Format;
+use crate::tile::Tile;
+
+/// The largest number of pixels in a picture: 1.5 GiB of samples.
+const MAX_PIXELS: u64 = 1 << 28;
+/// The largest width and height, so that positions in the grid of samples fit 32 bits.
+const MAX_SIDE: u32 = 1 << 20;
+
+/// How a picture is drawn and where it goes.
+#[derive(Args, Clone, Debug)]
+pub struct DrawOptions {
+    /// Where to: a .ppm or .png, a folder, or `-` for stdout [default: out/]
+    #[arg(short, long, value_name = "FILE|DIR|-")]
+    pub out: Option<PathBuf>,
+    /// Columns and rows of the picture
+    #[arg(long, value_name = "WxH", default_value = "1024x768")]
+    pub size: PictureSize,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Take N x N samples in each pixel
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub samples: u32,
+    /// The format to write, whatever the name [default: by the ending of FILE, else ppm]
+    #[arg(long)]
+    pub format: Option<Format>,
+    /// Bits per sample
+    #[arg(long, default_value = "8")]
+    pub depth: Depth,
+    /// Draw only band I of N, rows (I-1)H/N to IH/N, for `merge`
+    #[arg(long, value_name = "I/N")]
+    pub tile: Option<Tile>,
+    /// Write no progress and no notes
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write size, rays, hits, seconds and memory to stdout as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Columns and rows of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSize {
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+}
+
+impl FromStr for PictureSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (width, height) = text.split_once('x').ok_or("expected columns x rows, such as 640x480".to_owned())?;
+        let side = |digits: &str| match digits.parse::<u32>() {
+            Ok(side @ 1..=MAX_SIDE) => Ok(side),
+            _ => Err(format!("expected a whole number from 1 to {MAX_SIDE}, found {digits:?}")),
+        };
+        let (width, height) = (side(width)?, side(height)?);
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(format!("expected at most {MAX_PIXELS} pixels"));
+        }
+        Ok(Self { width, height })
+    }
+}
+
+/// Bits per sample of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Depth {
+    /// 8 bits, samples from 0 to 255.
+    #[value(name = "8")]
+    Eight,
+    /// 16 bits, samples from 0 to 65535.
+    #[value(name = "16")]
+    Sixteen,
+}
+
+impl Depth {
+    /// The largest sample.
+    pub fn maxval(self) -> u16 {
+        match self {
+            Self::Eight => 255,
+            Self::Sixteen => 65535,
+        }
+    }
+}

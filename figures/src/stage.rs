@@ -1,0 +1,184 @@
+//! A stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
+
+use glam::DVec3;
+use rt_geom::Sphere;
+use rt_shade::PointLight;
+
+use crate::camera::Camera;
+use crate::scene::Scene;
+
+impl Scene {
+    /// Sets a stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
+    ///
+    /// The camera is [`Camera::stage`]'s, from `FROM`. Objects that lie in one plane which is seen edge-on from there,
+    /// or at a slope below `EDGE_ON`, are seen along the plane's normal, from the front or, where the plane runs from
+    /// front to back, from the right.
+    pub fn set_stage(&mut self) {
+        let (low, high) = self.balls().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
+            (low.min(center - radius), high.max(center + radius))
+        });
+        let (center, size) = (low.midpoint(high), (high / 2.0 - low / 2.0).length());
+        let from = self
+            .flat_normal(2.0 * size)
+            .filter(|normal| normal.dot(FROM).abs() < EDGE_ON * FROM.length())
+            // A normal so far from FROM has one of the two components.
+            .map_or(FROM, |normal| {
+                let sided = if normal.z.abs() >= EDGE_ON { normal.z } else { normal.x };
+                normal * sided.signum()
+            });
+        self.background = DVec3::new(0.05, 0.06, 0.08);
+        self.camera = Camera::stage(from);
+        let [right, up, forward] = self.camera.axes();
+        let lamp = |[x, y, z]: [f64; 3], color: [f64; 3]| PointLight {
+            position: center + size * (x * right + y * up - z * forward),
+            color: DVec3::from_array(color),
+        };
+        self.lights = vec![lamp([-3.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.36, 0.4, 0.48])];
+    }
+
+    /// The unit normal, on either side, of the plane that all objects lie in; `None` if there is none, or if they lie
+    /// on a line.
+    ///
+    /// A plane is one for this purpose if nothing rises above it by more than `FLAT` of the objects' width, so that
+    /// seen edge-on they are at most a line. `size` is the diameter of all objects.
+    fn flat_normal(&self, size: f64) -> Option<DVec3> {
+        // The objects' width is at most their size: mostly this decides.
+        if self.spheres.iter().any(|sphere| sphere.radius() > FLAT * size) {
+            return None;
+        }
+        let start = self.balls().next()?.0;
+        // Within 0..=1 in magnitude at any scale. An overflow gives NaN, which fails every comparison.
+        let relative = |point: DVec3| point / size - start / size;
+        // Four points of diameter 1 between two planes this far apart span a tetrahedron of at most half the distance
+        // in volume, its base being at most half a square; the triple product is six times that. So a few points show
+        // most solids.
+        let few = |count: usize| count / 32 + 1;
+        let sample = self.spheres.iter().step_by(few(self.spheres.len())).map(Sphere::center);
+        let corners = self.triangles.iter().step_by(few(self.triangles.len())).map(|one| one.vertices()[0]);
+        let sample: Vec<DVec3> = sample.chain(corners).map(relative).collect();
+        let (along, _) = farthest(sample.iter().copied(), |at| at.length_squared());
+        let (across, _) = farthest(sample.iter().copied(), |at| along.cross(at).length_squared());
+        let (_, volume) = farthest(sample.iter().copied(), |at| along.cross(across).dot(at).abs());
+        if volume > 3.0 * (2.0 * FLAT) {
+            return None;
+        }
+        let centers = || self.balls().map(|(center, _)| relative(center));
+        let (along, length) = farthest(centers(), |at| at.length_squared());
+        let (across, width) = farthest(centers(), |at| along.cross(at).length_squared());
+        // The width of the objects, times their length, which is at least a quarter.
+        let width = width.sqrt();
+        if !(length > 0.0 && width > NEEDLE) {
+            return None;
+        }
+        let normal = along.cross(across).normalize();
+        let height = FLAT * width;
+        let within = |(center, radius): (DVec3, f64)| normal.dot(relative(center)).abs() + radius / size <= height;
+        self.balls().all(within).then_some(normal)
+    }
+}
+
+/// Where a stage is seen from, relative to the middle: 31 degrees to the right of the front and 21 degrees above. A
+/// cube along the axes shows three sides, 20, 12 and 9 parts of 25 as large as they are.
+const FROM: DVec3 = DVec3::new(12.0, 9.0, 20.0);
+
+/// A plane of objects that is seen at less than this slope, the sine of 7.2 degrees, is seen along its normal instead.
+const EDGE_ON: f64 = 0.125;
+
+/// Objects that rise above a plane by no more than this part of their width are flat: one pixel of a picture as wide as
+/// the program's.
+const FLAT: f64 = 1.0 / 1024.0;
+
+/// Objects narrower than this part of their length lie on a line: the normal of a plane through them would be lost in
+/// the rounding of their coordinates.
+const NEEDLE: f64 = 1e-9;
+
+/// The first of some points where a distance is largest, and that distance; zero if none is more.
+fn farthest(points: impl Iterator<Item = DVec3>, distance: impl Fn(DVec3) -> f64) -> (DVec3, f64) {
+    points.fold((DVec3::ZERO, 0.0), |most, at| {
+        let distance = distance(at);
+        if distance > most.1 { (at, distance) } else { most }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use rt_geom::Triangle;
+
+    use super::*;
+
+    /// Where a stage looks at such objects from: the unit direction from the middle to the eye.
+    fn looks_from(triangles: &[[DVec3; 3]], spheres: &[(DVec3, f64)]) -> DVec3 {
+        let triangles = triangles.iter().map(|&[a, b, c]| Triangle::new(a, b, c).unwrap()).collect();
+        let spheres = spheres.iter().map(|&(center, radius)| Sphere::new(center, radius).unwrap()).collect();
+        let mut scene = Scene { spheres, triangles, ..Scene::default() };
+        scene.set_stage();
+        // The lights turn with the camera: from the second, the first is to the left, above, and farther back.
+        let [right, up, forward] = scene.camera.axes();
+        let side = scene.lights[0].position - scene.lights[1].position;
+        if side.is_finite() && side != DVec3::ZERO {
+            assert!(side.dot(right) < 0.0 && side.dot(up) > 0.0 && side.dot(forward) < 0.0, "{side}");
+        }
+        -forward
+    }
+
+    /// Two triangles in the plane of two directions.
+    fn sheet(origin: DVec3, x: DVec3, y: DVec3) -> [[DVec3; 3]; 2] {
+        [[origin, origin + x, origin + y], [origin + x, origin + x + y, origin + y]]
+    }
+
+    fn is_near(found: DVec3, expected: DVec3) -> bool {
+        (found - expected.normalize()).length() < 1e-6
+    }
+
+    #[test]
+    fn solids_and_sheets_that_show_are_seen_from_the_stages_direction() {
+        let sheet = |x, y| sheet(DVec3::new(3.0, -1.0, 2.0), x, y).to_vec();
+        let sheets = [
+            sheet(DVec3::X, DVec3::Y),
+            sheet(DVec3::Y, DVec3::Z),
+            sheet(DVec3::Z, DVec3::X),
+            sheet(DVec3::X, DVec3::new(0.3, -0.5, 0.7)),
+            // Not flat, though each of its triangles is seen edge-on.
+            [sheet(FROM, DVec3::X), sheet(FROM, DVec3::Y)].concat(),
+        ];
+        for triangles in sheets {
+            assert!(is_near(looks_from(&triangles, &[]), FROM), "{triangles:?}");
+        }
+        assert!(is_near(looks_from(&[], &[(DVec3::ONE, 2.0)]), FROM));
+        assert!(is_near(looks_from(&[], &[(DVec3::ONE, 0.0)]), FROM));
+        assert!(is_near(looks_from(&sheet(FROM, DVec3::X), &[(DVec3::ZERO, 1.0)]), FROM));
+    }
+
+    #[test]
+    fn a_sheet_seen_edge_on_is_seen_along_its_normal() {
+        for (across, expected) in [
+            (DVec3::Y, DVec3::new(20.0, 0.0, -12.0)),
+            (DVec3::X, DVec3::new(0.0, -20.0, 9.0)),
+            (DVec3::Z, DVec3::new(9.0, -12.0, 0.0)),
+            (DVec3::new(1.0, 1.0, -3.0), FROM.cross(DVec3::new(-1.0, -1.0, 3.0))),
+        ] {
+            // From the front, or from the right where the sheet runs from front to back.
+            let side = if expected.normalize().z.abs() > EDGE_ON { expected.z } else { expected.x };
+            let expected = expected * side.signum();
+            for scale in [1.0, 1e-160, 1e150] {
+                for place in [DVec3::ZERO, DVec3::new(-7.0, 5.0, 4.0)] {
+                    let mut triangles = sheet(scale * place, scale * FROM, scale * 7.0 * across);
+                    for _ in 0..2 {
+                        let found = looks_from(&triangles, &[]);
+                        assert!(is_near(found, expected), "{across} {scale} {place}: {found} {expected}");
+                        // The same whatever comes first and however it turns.
+                        triangles.reverse();
+                        triangles.iter_mut().for_each(|triangle| triangle.reverse());
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_on_a_line_and_sizes_beyond_the_doubles_have_a_stage_too() {
+        let along = |k: f64| (k * FROM, 0.0);
+        assert!(is_near(looks_from(&[], &[along(0.0), along(1.0), along(3.0)]), FROM));
+        assert!(is_near(looks_from(&sheet(DVec3::ZERO, 5e306 * FROM, 5e306 * DVec3::Y), &[]), FROM));
+    }
+}
