@@ -715,18 +715,8 @@ mod tests {
     #[test]
     fn a_hole_joined_to_the_outline_stays_a_hole() {
         // A square with a square hole; corners 0 and 5, and 4 and 9, are the same points.
-        let outline: [[f64; 2]; 10] = [
-            [0.0, 0.0],
-            [9.0, 0.0],
-            [9.0, 9.0],
-            [0.0, 9.0],
-            [0.0, 0.0],
-            [3.0, 3.0],
-            [3.0, 6.0],
-            [6.0, 6.0],
-            [6.0, 3.0],
-            [3.0, 3.0],
-        ];
+        let outline = [(0, 0), (9, 0), (9, 9), (0, 9), (0, 0), (3, 3), (3, 6), (6, 6), (6, 3), (3, 3)];
+        let outline = outline.map(|(x, y)| [f64::from(x), f64::from(y)]);
         for start in 0..10 {
             let corners: Vec<DVec3> =
                 (0..10).map(|at| outline[(start + at) % 10]).map(|[x, y]| DVec3::new(x, y, 0.25 * x)).collect();
