@@ -1,6 +1,102 @@
-//! What an instruction set offers.
+//! The choice of an instruction set, made once for a kernel, and what the set offers.
 
-use fearless_simd::Simd;
+#[cfg(not(target_feature = "sse2"))]
+use fearless_simd::Fallback as Baseline;
+#[cfg(target_feature = "sse2")]
+use fearless_simd::Sse2 as Baseline;
+use fearless_simd::{Level, Simd};
+
+/// Compiles a kernel for each instruction set that earns its copy, and runs the copy for the processor.
+///
+/// On x86 these are AVX-512, AVX2 (with fused multiply-add) and the baseline, SSE2; elsewhere those of `fearless_simd`. All
+/// give the same bits. There are two forms:
+///
+/// - `dispatch!(level, simd => expression)` runs an expression with the instructions of a [`Level`], of which every kernel in
+///   the expression takes `simd`. What the expression uses passes through memory.
+/// - `dispatch! { fn name(argument: Type, ..) -> Type = kernel; }` defines a function that calls `kernel::<FMA, S>(simd,
+///   argument, ..)`. The arguments pass in registers: for kernels of a few nanoseconds, with vectors of four lanes at most,
+///   so without a copy for AVX-512.
+///
+/// Kernels are `#[inline(always)]`, together with all that they call on the hot path.
+macro_rules! dispatch {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis fn $name:ident($($argument:ident: $kind:ty),*) -> $result:ty = $kernel:ident;
+    ) => {
+        $(#[$attribute])*
+        #[inline]
+        $visibility fn $name($($argument: $kind),*) -> $result {
+            fearless_simd::kernel!(
+                #[inline]
+                fn avx2(simd: Avx2, $($argument: $kind),*) -> $result {
+                    $kernel::<true, _>(simd, $($argument),*)
+                }
+            );
+            fearless_simd::kernel!(
+                #[inline]
+                fn neon(simd: Neon, $($argument: $kind),*) -> $result {
+                    $kernel::<true, _>(simd, $($argument),*)
+                }
+            );
+            #[inline(never)]
+            fn plain($($argument: $kind),*) -> $result {
+                $kernel::<false, _>($crate::simd::baseline(), $($argument),*)
+            }
+            #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+            if rt_math::exact::has_fma() && let Some(simd) = fearless_simd::Level::new().as_avx2() {
+                return avx2(simd, $($argument),*);
+            }
+            #[cfg(target_arch = "aarch64")]
+            if let Some(simd) = fearless_simd::Level::new().as_neon() {
+                return neon(simd, $($argument),*);
+            }
+            plain($($argument),*)
+        }
+    };
+    ($level:expr, $simd:ident => $run:expr) => {{
+        let level: fearless_simd::Level = $level;
+        #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+        {
+            if let Some($simd) = level.as_avx512() {
+                fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $run,
+                )
+            } else if let Some($simd) = level.as_avx2() {
+                fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $run,
+                )
+            } else {
+                let $simd = $crate::simd::baseline();
+                fearless_simd::Simd::vectorize(
+                    $simd,
+                    #[inline(always)]
+                    || $run,
+                )
+            }
+        }
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "x86")))]
+        fearless_simd::dispatch!(level, $simd => $run)
+    }};
+}
+pub(crate) use dispatch;
+
+/// What every processor has for which this is compiled, without run-time checks.
+#[cfg(target_feature = "sse2")]
+#[inline(always)]
+pub(crate) fn baseline() -> Baseline {
+    Level::baseline().as_sse2().expect("the compiler was told that it is there")
+}
+
+/// What every processor has for which this is compiled, without run-time checks.
+#[cfg(not(target_feature = "sse2"))]
+#[inline(always)]
+pub(crate) fn baseline() -> Baseline {
+    Baseline::new()
+}
 
 /// Whether the instructions of this level have a fused multiply-add; known when compiled.
 #[inline(always)]

@@ -21,6 +21,7 @@ use fearless_simd::{Level, Simd};
 use glam::DVec3;
 
 use crate::Sphere;
+use crate::simd::dispatch;
 use basis::Tangent;
 use certify::{Bracket, U};
 use extreme::extreme;
@@ -58,38 +59,8 @@ pub fn enclosing_sphere(spheres: &[Sphere]) -> Option<Enclosing> {
 
 /// [`enclosing_sphere`] with the instructions of a given level; the bits of the answer do not depend on it.
 fn enclosing_at(level: Level, spheres: &[Sphere]) -> Option<Enclosing> {
-    by_level!(level, simd => enclosing(simd, spheres))
+    dispatch!(level, simd => enclosing(simd, spheres))
 }
-
-/// Compiles an expression for each level that differs here (fewer copies than `fearless_simd::dispatch` makes on x86),
-/// and runs that of the given level.
-macro_rules! by_level {
-    ($level:expr, $simd:ident => $run:expr) => {{
-        let level: Level = $level;
-        #[cfg(target_arch = "x86_64")]
-        {
-            if let Some($simd) = level.as_avx512() {
-                fearless_simd::Simd::vectorize(
-                    $simd,
-                    #[inline(always)]
-                    || $run,
-                )
-            } else if let Some($simd) = level.as_avx2() {
-                fearless_simd::Simd::vectorize(
-                    $simd,
-                    #[inline(always)]
-                    || $run,
-                )
-            } else {
-                let $simd = fearless_simd::Fallback::new();
-                $run
-            }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        fearless_simd::dispatch!(level, $simd => $run)
-    }};
-}
-use by_level;
 
 /// Within these limits of the largest reach no fourth power over- or underflows harmfully, in double-double either.
 const ORDINARY: std::ops::Range<f64> = 1e-40..1e50;

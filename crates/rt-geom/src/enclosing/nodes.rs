@@ -15,8 +15,9 @@ use super::basis::Tangent;
 use super::certify::U;
 use super::few::pivot;
 use super::lanes::{LANES, Lanes, columns, measure};
-use super::{ORDINARY, ORDINARY_SQUARES, by_level, enclosing_sphere};
+use super::{ORDINARY, ORDINARY_SQUARES, enclosing_sphere};
 use crate::Sphere;
+use crate::simd::dispatch;
 
 /// A node of a tree over spheres in leaf order.
 #[derive(Clone, Debug)]
@@ -131,7 +132,7 @@ impl Part<'_> {
         let mut stack = Vec::new();
         for place in places {
             let node = &self.nodes[self.first + place];
-            let found = by_level!(level, simd => self.node(simd, node, &mut stack));
+            let found = dispatch!(level, simd => self.node(simd, node, &mut stack));
             let any = self.bounds[place].center();
             self.bounds[place] = found.sphere.unwrap_or_else(|| everything(any));
             self.found[place] = found;

@@ -10,66 +10,21 @@
 //! of which the filter knows `sqrt(Delta)`, and that `t* - t` is small. A rounding test tells whether `t` and this step decide the
 //! last bit. `docs/numerics.md`, section 5, proves the bounds.
 
-use fearless_simd::{Fallback, Simd, f64x2, f64x4, kernel, prelude::*};
+use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
 use rt_math::Roots;
 use rt_math::exact::round_if_certain;
 
 use super::{Approximation, Crossing, Line, Place, Sphere, U, exact};
 use crate::Ray;
 use crate::ray::holds;
+use crate::simd::dispatch;
 
 /// The error of half the residual, relative to `w.w + r²`.
 const RESIDUAL_ERROR: f64 = 160.0 * U * U;
 
-/// Defines a function whose kernel is compiled for four lanes with fused multiply-add and for plain arithmetic, and chosen
-/// at run time. Both give the same result.
-macro_rules! lanes_dispatch {
-    ($(#[$attribute:meta])* fn $name:ident($($argument:ident: $kind:ty),*) -> $result:ty = $kernel:ident;) => {
-        $(#[$attribute])*
-        #[inline]
-        pub(super) fn $name($($argument: $kind),*) -> $result {
-            kernel!(
-                #[inline]
-                fn avx2(simd: Avx2, $($argument: $kind),*) -> $result {
-                    $kernel::<true, _>(simd, $($argument),*)
-                }
-            );
-            kernel!(
-                #[inline]
-                fn neon(simd: Neon, $($argument: $kind),*) -> $result {
-                    $kernel::<true, _>(simd, $($argument),*)
-                }
-            );
-            kernel!(
-                #[inline]
-                fn sse2(simd: Sse2, $($argument: $kind),*) -> $result {
-                    $kernel::<false, _>(simd, $($argument),*)
-                }
-            );
-            #[inline(never)]
-            fn plain($($argument: $kind),*) -> $result {
-                #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-                if let Some(simd) = fearless_simd::Level::new().as_sse2() {
-                    return sse2(simd, $($argument),*);
-                }
-                $kernel::<false, _>(Fallback::new(), $($argument),*)
-            }
-            #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-            if rt_math::exact::has_fma() && let Some(simd) = fearless_simd::Level::new().as_avx2() {
-                return avx2(simd, $($argument),*);
-            }
-            #[cfg(target_arch = "aarch64")]
-            if let Some(simd) = fearless_simd::Level::new().as_neon() {
-                return neon(simd, $($argument),*);
-            }
-            plain($($argument),*)
-        }
-    };
-}
-
-lanes_dispatch! {
+dispatch! {
     /// Returns the correctly rounded closest root between the ends of the range.
-    fn closest(sphere: &Sphere, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
+    pub(super) fn closest(sphere: &Sphere, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
 }
 
 #[inline(always)]
@@ -93,9 +48,9 @@ fn closest_kernel<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray,
     }
 }
 
-lanes_dispatch! {
+dispatch! {
     /// Returns the correctly rounded roots.
-    fn roots(sphere: &Sphere, ray: &Ray) -> Roots = roots_kernel;
+    pub(super) fn roots(sphere: &Sphere, ray: &Ray) -> Roots = roots_kernel;
 }
 
 #[inline(always)]
@@ -208,6 +163,8 @@ fn two_prod<const FMA: bool, S: Simd>(a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f6
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::Fallback;
+
     use crate::reference::sphere::Equation;
     use crate::reference::{Exact, exact};
     use glam::DVec3;
