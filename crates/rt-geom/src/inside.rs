@@ -7,24 +7,21 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rt_math::exact::{DoubleDouble, Dyadic, Fixed, Window, round_if_certain};
+use rt_math::exact::vector::{cross, difference, dot, minus};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, power_of_two, round_if_certain};
 use rt_math::fma_dispatch;
 
 use crate::Triangle;
 use crate::ray::{larger, max_abs};
-use crate::triangle::exact::{cross, difference, dot, integer_cross, integer_difference, integer_dot};
-
-/// `2^-53`, the unit roundoff.
-const U: f64 = f64::EPSILON / 2.0;
 
 /// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 7).
-const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+const UNDERFLOW: f64 = power_of_two(-500);
 
 /// Swallows what underflow does to a weight: `2^-1000`.
-const UNDERFLOW_WEIGHT: f64 = f64::from_bits((1023 - 1000) << 52);
+const UNDERFLOW_WEIGHT: f64 = power_of_two(-1000);
 
 /// Up to here in magnitude the differences of points may be for plain doubles and double-double: `2^200`.
-const FARTHEST: f64 = f64::from_bits((1023 + 200) << 52);
+const FARTHEST: f64 = power_of_two(200);
 
 /// Where a point, projected orthogonally into a triangle's plane, lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,8 +127,8 @@ fn double_double_turns<const FMA: bool>(
     triangle: &Triangle,
 ) -> ([DoubleDouble<FMA>; 3], DoubleDouble<FMA>) {
     let [a, b, c] = triangle.vertices();
-    let n = cross(&difference(b, a), &difference(c, a));
-    let turn = |from, to| dot(&n, &cross(&difference(to, from), &difference(point, from)));
+    let n = cross(&difference::<DoubleDouble<FMA>>(b, a), &difference(c, a));
+    let turn = |from, to| dot(&n, &cross(&difference::<DoubleDouble<FMA>>(to, from), &difference(point, from)));
     ([turn(b, c), turn(c, a), turn(a, b)], dot(&n, &n))
 }
 
@@ -178,10 +175,10 @@ impl<const Q: usize> FixedTurns<Q> {
         let [a, b, c] = triangle.vertices();
         let points = [a, b, c, point];
         let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
-        let [a, b, c, p] = points.map(|point| point.to_array().map(|x| window.fixed(x)));
-        let [e, f, q] = [b, c, p].map(|end| Fixed::difference(&end, &a));
-        let (ee, ef, ff) = (Fixed::<S>::dot(&e, &e), Fixed::<S>::dot(&e, &f), Fixed::<S>::dot(&f, &f));
-        let (eq, fq) = (Fixed::<S>::dot(&e, &q), Fixed::<S>::dot(&f, &q));
+        let [a, b, c, p] = points.map(|point| window.vector(point));
+        let [e, f, q] = [b, c, p].map(|end| minus(&end, &a));
+        let [ee, ef, ff]: [Fixed<S>; 3] = [dot(&e, &e), dot(&e, &f), dot(&f, &f)];
+        let [eq, fq]: [Fixed<S>; 2] = [dot(&e, &q), dot(&f, &q)];
         let minor =
             |a: &Fixed<S>, d: &Fixed<S>, b: &Fixed<S>, c: &Fixed<S>| Fixed::<Q>::product(a, d) - Fixed::product(b, c);
         let (sum, b, c) = (minor(&ee, &ff, &ef, &ef), minor(&ff, &eq, &ef, &fq), minor(&ee, &fq, &ef, &eq));
@@ -236,9 +233,8 @@ type Integer = Dyadic<136>;
 
 fn integer_turns(point: DVec3, triangle: &Triangle) -> ([Integer; 3], [Integer; 3]) {
     let [a, b, c] = triangle.vertices();
-    let n = integer_cross(&integer_difference(b, a), &integer_difference(c, a));
-    let turn =
-        |from, to| integer_dot(&n, &integer_cross(&integer_difference(to, from), &integer_difference(point, from)));
+    let n = cross(&difference::<Integer>(b, a), &difference(c, a));
+    let turn = |from, to| dot(&n, &cross(&difference::<Integer>(to, from), &difference(point, from)));
     ([turn(b, c), turn(c, a), turn(a, b)], n)
 }
 
@@ -252,7 +248,7 @@ fn integer_signs(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
 #[inline(never)]
 fn integer_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
     let (turns, n) = integer_turns(point, triangle);
-    let square = integer_dot(&n, &n);
+    let square = dot(&n, &n);
     turns.map(|turn| Integer::quotient(&turn, &square))
 }
 
@@ -279,17 +275,19 @@ fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(point: DVec3, 
     let [a, b, c] = triangle.vertices();
     let points = [a, b, c, point];
     let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
-    let [a, b, c, p] = points.map(|point| point.to_array().map(|x| window.fixed(x)));
-    let [e, f, q] = [b, c, p].map(|end| Fixed::difference(&end, &a));
-    Some(Fixed::<V>::dot(&Fixed::<A>::cross(&e, &f), &q).sign() == Ordering::Equal)
+    let [a, b, c, p] = points.map(|point| window.vector(point));
+    let [e, f, q] = [b, c, p].map(|end| minus(&end, &a));
+    let n: [Fixed<A>; 3] = cross(&e, &f);
+    let volume: Fixed<V> = dot(&n, &q);
+    Some(volume.sign() == Ordering::Equal)
 }
 
 #[cold]
 #[inline(never)]
 fn integer_coplanar(point: DVec3, triangle: &Triangle) -> bool {
     let [a, b, c] = triangle.vertices();
-    let n: [Integer; 3] = integer_cross(&integer_difference(b, a), &integer_difference(c, a));
-    integer_dot(&n, &integer_difference(point, a)).sign() == Ordering::Equal
+    let n = cross(&difference::<Integer>(b, a), &difference(c, a));
+    dot(&n, &difference(point, a)).sign() == Ordering::Equal
 }
 
 #[cfg(test)]

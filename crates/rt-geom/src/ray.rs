@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use glam::DVec3;
+use rt_math::exact::power_of_two;
 
 /// The points `origin + t direction` with `t >= 0`.
 ///
@@ -26,7 +27,7 @@ impl Ray {
     /// Returns the ray, or `None` if a component is not finite or the direction is zero.
     #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Self> {
-        const LONGEST: f64 = f64::from_bits((1023 + 100) << 52);
+        const LONGEST: f64 = power_of_two(100);
         let reach = max_abs(direction);
         let square = direction.length_squared();
         // NaN if a component is, and then no comparison holds.

@@ -4,7 +4,8 @@
 use fearless_simd::Fallback as Baseline;
 #[cfg(target_feature = "sse2")]
 use fearless_simd::Sse2 as Baseline;
-use fearless_simd::{Level, Simd};
+use fearless_simd::{Level, Simd, f64x4, prelude::*};
+use rt_math::exact::two_prod_with;
 
 /// Compiles a kernel for each instruction set that earns its copy, and runs the copy for the processor.
 ///
@@ -107,6 +108,17 @@ pub(crate) fn has_fma<S: Simd>(simd: S) -> bool {
     return simd.level().as_neon().is_some();
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     return false;
+}
+
+/// [`rt_math::exact::two_prod`] in every lane.
+#[inline(always)]
+pub(crate) fn two_prod<const FMA: bool, S: Simd>(a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
+    two_prod_with::<FMA, _>(
+        a,
+        b,
+        #[inline(always)]
+        |a, b, c| a.mul_sub_precise(b, c),
+    )
 }
 
 /// Asks for cache lines that are likely to be read soon.

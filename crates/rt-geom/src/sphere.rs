@@ -19,23 +19,21 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rt_math::Roots;
+use rt_math::exact::{U, power_of_two, power_of_two_near_inverse};
 
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay, cross, dot, max_abs};
 
-/// `2^-53`, the unit roundoff.
-const U: f64 = f64::EPSILON / 2.0;
-
 /// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there, and what
 /// underflows is far below the bounds.
-const SMALLEST: f64 = f64::from_bits((1023 - 250) << 52);
-const LARGEST: f64 = f64::from_bits((1023 + 600) << 52);
+const SMALLEST: f64 = power_of_two(-250);
+const LARGEST: f64 = power_of_two(600);
 
 /// The error of `Delta` in the filter, relative to `d.d (w.w + r²)`, as `docs/numerics.md`, section 5, has it.
 const ERROR: f64 = 17.0 * U;
 
 /// Swallows what underflow does to a comparison of squares: `2^-1000`.
-const UNDERFLOW: f64 = f64::from_bits((1023 - 1000) << 52);
+const UNDERFLOW: f64 = power_of_two(-1000);
 
 /// Where a point lies with regard to a sphere's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -311,10 +309,4 @@ impl Crossing {
             None
         }
     }
-}
-
-/// A power of two by which a positive number becomes about 1; at most 2^1022.
-pub(crate) fn power_of_two_near_inverse(x: f64) -> f64 {
-    let exponent = (x.to_bits() >> 52).min(2045);
-    f64::from_bits((2046 - exponent).min(2045) << 52)
 }

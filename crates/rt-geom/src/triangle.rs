@@ -21,17 +21,15 @@ mod refine;
 use std::ops::Range;
 
 use glam::DVec3;
+use rt_math::exact::{U, power_of_two};
 
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay, cross, dot, larger, max_abs, smaller};
 
-/// `2^-53`, the unit roundoff.
-const U: f64 = f64::EPSILON / 2.0;
-
 /// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's origin
 /// is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
-const SHORTEST: f64 = f64::from_bits((1023 - 150) << 52);
-const FARTHEST: f64 = f64::from_bits((1023 + 300) << 52);
+const SHORTEST: f64 = power_of_two(-150);
+const FARTHEST: f64 = power_of_two(300);
 
 /// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to `E² (E + S)`,
 /// as `docs/numerics.md`, section 6, has them.

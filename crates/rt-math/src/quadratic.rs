@@ -15,7 +15,7 @@ use core::cmp::Ordering;
 use crate::exact::stage::{Stage, decided};
 use crate::exact::{
     DoubleDouble, Dyadic, Fixed, Window, fast_two_sum, mantissa_and_exponent, power_of_two, remainder,
-    round_if_certain, two_prod,
+    round_if_certain, rounded_ends, scale, two_prod,
 };
 use crate::fma_dispatch;
 
@@ -82,7 +82,7 @@ fn kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Roots {
             return roots;
         }
     }
-    rest(a, b, c)
+    slow_path(a, b, c)
 }
 
 /// The two roots in doubles with corrections, if these decide their rounding; `d` is `D` to 31 bits or better.
@@ -111,8 +111,7 @@ fn filter<const FMA: bool>(a: f64, b: f64, c: f64, d: f64) -> Option<Roots> {
         let x_low = rest * inverse;
         let error = multiply_add::<FMA>(x.abs(), FILTER_ERROR, FILTER_ERROR_FLOOR);
         // the rounding test, for both roots at once
-        lower[i] = x + (x_low - error);
-        upper[i] = x + (x_low + error);
+        (lower[i], upper[i]) = rounded_ends(x, x_low, error);
     }
     if (lower[0] == upper[0]) & (lower[1] == upper[1]) {
         let first_is_smaller = upper[0] < upper[1];
@@ -133,7 +132,7 @@ fn multiply_add<const FMA: bool>(x: f64, y: f64, z: f64) -> f64 {
 /// All that the filter does not decide.
 #[cold]
 #[inline(never)]
-fn rest(a: f64, b: f64, c: f64) -> Roots {
+fn slow_path(a: f64, b: f64, c: f64) -> Roots {
     if !(a.is_finite() && b.is_finite() && c.is_finite()) {
         return Roots::None;
     }
@@ -251,8 +250,7 @@ fn scaled_roots(a: f64, b: f64, c: f64) -> Option<Roots> {
 /// `x 2^k`, if that is a normal double or zero.
 #[inline(always)]
 fn unscaled(x: f64, k: i32) -> Option<f64> {
-    let half = k / 2;
-    let product = x * power_of_two(half.clamp(-1022, 1023)) * power_of_two((k - half).clamp(-1022, 1023));
+    let product = scale(x, k);
     (product.is_normal() || x == 0.0).then_some(product)
 }
 

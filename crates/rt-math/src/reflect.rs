@@ -9,7 +9,8 @@
 use glam::DVec3;
 
 use crate::exact::stage::{Stage, decided};
-use crate::exact::{Dyadic, Fixed, Window, power_of_two, remainder, two_diff, two_prod, two_sum};
+use crate::exact::vector::dot;
+use crate::exact::{Dyadic, Fixed, Window, power_of_two, remainder, rounded_ends, two_diff, two_prod, two_sum};
 use crate::fma_dispatch;
 
 /// Returns `incident` mirrored in the plane through the origin with the given normal: `v - 2 (v·n) / (n·n) n`.
@@ -52,7 +53,7 @@ fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64)
     }
     // What is certain is not computed again.
     let lower = if in_range { lower } else { [f64::NAN; 3] };
-    rest(v, n, &lower, &upper)
+    slow_path(v, n, &lower, &upper)
 }
 
 /// Returns what [`reflect`] returns, and whether it is that: `false` where double-double does not decide the rounding.
@@ -62,7 +63,7 @@ fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64)
 ///
 /// ```
 /// use glam::DVec3;
-/// use rt_math::exact::reflect_if_certain;
+/// use rt_math::reflect_if_certain;
 ///
 /// let (reflected, certain) = reflect_if_certain::<false>(DVec3::new(1.0, -1.0, 0.0), 5.0 * DVec3::Y);
 /// assert!(certain && reflected == DVec3::new(1.0, 1.0, 0.0));
@@ -85,7 +86,7 @@ fn all_equal(lower: &[f64; 3], upper: &[f64; 3]) -> bool {
 #[inline(always)]
 fn bounds<const FMA: bool>(incident: DVec3, normal: DVec3) -> ([f64; 3], [f64; 3], bool) {
     let (v, n) = (incident.to_array(), normal.to_array());
-    let [(vn, vn_low, size), (nn, nn_low, _)] = [dot::<FMA>(v, n), dot::<FMA>(n, n)];
+    let [(vn, vn_low, size), (nn, nn_low, _)] = [dot_and_size::<FMA>(v, n), dot_and_size::<FMA>(n, n)];
     // NaN and infinity fail these comparisons
     let in_range = (size > 1.0 / WINDOW) & (size < WINDOW) & (nn > 1.0 / WINDOW) & (nn < WINDOW);
     let inverse = 1.0 / nn;
@@ -101,15 +102,14 @@ fn bounds<const FMA: bool>(incident: DVec3, normal: DVec3) -> ([f64; 3], [f64; 3
         let floor = if n[i] == 0.0 { 0.0 } else { ERROR_FLOOR };
         let error = (v[i].abs() + weight * n[i].abs()) * ERROR + floor;
         // the rounding test, for all components at once
-        lower[i] = x + (x_low - error);
-        upper[i] = x + (x_low + error);
+        (lower[i], upper[i]) = rounded_ends(x, x_low, error);
     }
     (lower, upper, in_range)
 }
 
 /// The dot product as a double and a correction, and the sum of the magnitudes of its terms.
 #[inline(always)]
-fn dot<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
+fn dot_and_size<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
     let (x, x_low) = two_prod::<FMA>(a[0], b[0]);
     let (y, y_low) = two_prod::<FMA>(a[1], b[1]);
     let (z, z_low) = two_prod::<FMA>(a[2], b[2]);
@@ -121,7 +121,7 @@ fn dot<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
 /// All that double-double does not decide; components whose bounds are equal are known.
 #[cold]
 #[inline(never)]
-fn rest(v: DVec3, n: DVec3, lower: &[f64; 3], upper: &[f64; 3]) -> DVec3 {
+fn slow_path(v: DVec3, n: DVec3, lower: &[f64; 3], upper: &[f64; 3]) -> DVec3 {
     if !(v.is_finite() && n.is_finite()) || n == DVec3::ZERO {
         return DVec3::NAN;
     }
@@ -144,8 +144,8 @@ fn fixed<const N: usize, const S: usize, const V: usize>(
 ) -> Option<DVec3> {
     let (v_window, n_window) = (Window::<N>::around(&v.to_array())?, Window::<N>::around(&n.to_array())?);
     decided(Stage::Fixed);
-    let (v, n) = (v.to_array().map(|x| v_window.fixed(x)), n.to_array().map(|x| n_window.fixed(x)));
-    let (vn, nn) = (Fixed::<S>::dot(&v, &n), Fixed::<S>::dot(&n, &n));
+    let (v, n) = (v_window.vector(v), n_window.vector(n));
+    let (vn, nn): (Fixed<S>, Fixed<S>) = (dot(&v, &n), dot(&n, &n));
     let twice = vn + vn;
     let mut image = *upper;
     for i in 0..3 {
@@ -166,10 +166,9 @@ fn integers(v: DVec3, n: DVec3) -> DVec3 {
 
 #[inline(never)]
 fn sized<const LIMBS: usize>(v: DVec3, n: DVec3) -> DVec3 {
-    type Vector<const LIMBS: usize> = [Dyadic<LIMBS>; 3];
     let [v, n] = [v, n].map(|x| x.to_array().map(Dyadic::<LIMBS>::from_f64));
-    let dot = |a: &Vector<LIMBS>, b: &Vector<LIMBS>| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
-    let (twice, nn) = (dot(&v, &n).scale(1), dot(&n, &n));
+    let (vn, nn): (Dyadic<LIMBS>, Dyadic<LIMBS>) = (dot(&v, &n), dot(&n, &n));
+    let twice = vn.scale(1);
     DVec3::from_array([0, 1, 2].map(|i| Dyadic::quotient(&(&v[i] * &nn - &twice * &n[i]), &nn)))
 }
 

@@ -7,7 +7,8 @@
 
 use fearless_simd::Level;
 use glam::DVec3;
-use rt_math::exact::{dot_with_error, reflect_if_certain};
+use rt_math::exact::dot_with_error;
+use rt_math::reflect_if_certain;
 
 use crate::phong::{COSINE_ERROR, Material, PointLight, ordinary_unit, phong};
 use crate::power::ordinary_power;

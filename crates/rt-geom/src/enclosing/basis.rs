@@ -8,8 +8,9 @@
 //! barycentric coordinates of x; the sphere is the minimal one of its spheres if none of them is negative.
 
 use glam::DVec3;
+use rt_math::exact::vector::{cross, difference, dot};
 
-use super::real::{Real, cross, dot};
+use super::real::Real;
 use crate::Sphere;
 
 /// The sphere that one to four spheres touch from inside, with its center in the flat that their centers span.
@@ -28,12 +29,6 @@ pub(super) struct Tangent<T> {
     pub(super) dual: [[T; 3]; 3],
     /// The derivative of `x` by `rho`, as far as the linear equations say.
     pub(super) q: [T; 3],
-}
-
-/// The difference of the centers of two spheres.
-#[inline(always)]
-pub(super) fn offset<T: Real>(to: DVec3, from: DVec3) -> [T; 3] {
-    [T::difference(to.x, from.x), T::difference(to.y, from.y), T::difference(to.z, from.z)]
 }
 
 impl<T: Real> Tangent<T> {
@@ -118,7 +113,7 @@ impl<T: Real> Tangent<T> {
         }
         let (p1, s1, h1) = relative::<T>(&spheres[self.index[1]], c0, r0);
         if self.len == 2 {
-            let p2 = dot(p1, p1);
+            let p2 = dot(&p1, &p1);
             let length = p2.sqrt();
             let inverse = T::ONE / p2;
             let rho = (length + s1) * T::from(0.5);
@@ -133,12 +128,17 @@ impl<T: Real> Tangent<T> {
             return T::ZERO.below(rho) && share.is_finite();
         }
         let (p2, s2, h2) = relative::<T>(&spheres[self.index[2]], c0, r0);
-        let n = cross(p1, p2);
+        let n = cross(&p1, &p2);
         if self.len == 3 {
-            return self.finish(dot(n, n), [cross(p2, n), cross(n, p1), zero], [h1, h2, T::ZERO], [s1, s2, T::ZERO]);
+            return self.finish(
+                dot(&n, &n),
+                [cross(&p2, &n), cross(&n, &p1), zero],
+                [h1, h2, T::ZERO],
+                [s1, s2, T::ZERO],
+            );
         }
         let (p3, s3, h3) = relative::<T>(&spheres[self.index[3]], c0, r0);
-        self.finish(dot(n, p3), [cross(p2, p3), cross(p3, p1), n], [h1, h2, h3], [s1, s2, s3])
+        self.finish(dot(&n, &p3), [cross(&p2, &p3), cross(&p3, &p1), n], [h1, h2, h3], [s1, s2, s3])
     }
 
     /// Solves the quadratic for `rho`, given the dual basis times `scale`. (It is divided out as late as can be: the
@@ -148,7 +148,7 @@ impl<T: Real> Tangent<T> {
         let inverse = T::ONE / scale;
         let (a, q) = (times(combine(h, &dual), inverse), times(combine(s, &dual), inverse));
         // (q.q - 1) rho² + 2 a.q rho + a.a = 0: the smallest root that is not negative, without cancellation.
-        let (second, first, constant) = (dot(q, q) - T::ONE, dot(a, q), dot(a, a));
+        let (second, first, constant) = (dot(&q, &q) - T::ONE, dot(&a, &q), dot(&a, &a));
         let root = (first * first - second * constant).sqrt();
         let (numerator, denominator) =
             if T::ZERO.below(first) { (first + root, -second) } else { (constant, root - first) };
@@ -159,7 +159,7 @@ impl<T: Real> Tangent<T> {
         self.dual = dual.map(|k| times(k, inverse));
         let x = [a[0] + rho * q[0], a[1] + rho * q[1], a[2] + rho * q[2]];
         let [k1, k2, k3] = &self.dual;
-        let (w1, w2, w3) = (dot(*k1, x), dot(*k2, x), dot(*k3, x));
+        let (w1, w2, w3) = (dot(k1, &x), dot(k2, &x), dot(k3, &x));
         self.x = x;
         self.rho = rho;
         self.weight = [T::ONE - (w1 + w2 + w3), w1, w2, w3];
@@ -185,7 +185,7 @@ impl<T: Real> Tangent<T> {
     #[inline(always)]
     pub(super) fn sphere(&self, spheres: &[Sphere], origin: DVec3) -> ([T; 3], T) {
         let first = &spheres[self.index[0]];
-        let from = offset::<T>(first.center(), origin);
+        let from = difference::<T>(first.center(), origin);
         let center = [from[0] + self.x[0], from[1] + self.x[1], from[2] + self.x[2]];
         (center, self.rho + T::from(first.radius()))
     }
@@ -194,16 +194,16 @@ impl<T: Real> Tangent<T> {
     #[inline(always)]
     pub(super) fn excess(&self, sphere: &Sphere, spheres: &[Sphere]) -> T {
         let (from, radius) = self.sphere(spheres, sphere.center());
-        dot(from, from).sqrt() + (T::from(sphere.radius()) - radius)
+        dot(&from, &from).sqrt() + (T::from(sphere.radius()) - radius)
     }
 
     /// The place in `old`, the spheres that were solved last, of the one that leaves first for one more: weight moves to that one and off the others in proportion
     /// to its barycentric coordinates among them, and that of one runs out first.
     #[inline(always)]
     fn leaves(&self, old: [usize; 4], index: usize, spheres: &[Sphere]) -> usize {
-        let p = offset::<T>(spheres[index].center(), spheres[old[0]].center());
+        let p = difference::<T>(spheres[index].center(), spheres[old[0]].center());
         let [k1, k2, k3] = self.dual;
-        let (k1, k2, k3) = (dot(k1, p), dot(k2, p), dot(k3, p));
+        let (k1, k2, k3) = (dot(&k1, &p), dot(&k2, &p), dot(&k3, &p));
         let share = [T::ONE - (k1 + k2 + k3), k1, k2, k3];
         // weight[i] / share[i] < weight[out] / share[out], without dividing
         let mut out = 0;
@@ -303,9 +303,9 @@ impl<T: Real> Tangent<T> {
 /// `p`, `s` and `h` of a sphere: see the head of this file.
 #[inline(always)]
 fn relative<T: Real>(sphere: &Sphere, center: DVec3, radius: f64) -> ([T; 3], T, T) {
-    let p = offset::<T>(sphere.center(), center);
-    let s = T::difference(sphere.radius(), radius);
-    (p, s, (dot(p, p) - s * s) * T::from(0.5))
+    let p = difference::<T>(sphere.center(), center);
+    let s = T::from_difference(sphere.radius(), radius);
+    (p, s, (dot(&p, &p) - s * s) * T::from(0.5))
 }
 
 #[inline(always)]

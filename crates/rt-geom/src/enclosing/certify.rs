@@ -6,16 +6,14 @@
 
 use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use glam::DVec3;
-use rt_math::exact::{self as scalar, Dyadic, Fixed, Window, two_prod};
+use rt_math::exact::vector::{FromDifference, difference, dot, minus};
+use rt_math::exact::{Dyadic, Fixed, U, Window, power_of_two, two_diff, two_prod, two_sum};
 
-use super::basis::{Tangent, offset};
-use super::real::{Wide, dot};
-use super::stage::asked;
+use super::basis::Tangent;
+use super::real::Wide;
+use super::stage::{Stage, decided};
 use crate::Sphere;
-use crate::simd::has_fma;
-
-/// Half the distance from 1 to the next double, the relative error of one rounded operation.
-pub(super) const U: f64 = f64::EPSILON / 2.0;
+use crate::simd::{self as lanes, has_fma};
 
 /// Relative error bound of a reach computed in double-double arithmetic (proved: 75 u² at most).
 const REACH_ERROR: f64 = 128.0 * U * U;
@@ -30,41 +28,10 @@ pub(super) struct Bracket {
     pub(super) high: f64,
 }
 
-/// `a + b` and its rounding error, exactly, lane by lane (Knuth).
-#[inline(always)]
-fn two_sum<S: Simd>(a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
-/// `a²` and its rounding error, exactly, lane by lane (without fused multiply-add: Dekker).
-#[inline(always)]
-fn two_square<S: Simd>(simd: S, a: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
-    let square = a * a;
-    if has_fma(simd) {
-        return (square, a.mul_sub_precise(a, square));
-    }
-    let shifted = a * 134_217_729.0; // 2^27 + 1
-    let high = shifted - (shifted - a);
-    let low = a - high;
-    (square, low * low - ((square - high * high) - (high + high) * low))
-}
-
 /// `a b` and its rounding error, exactly, lane by lane.
 #[inline(always)]
 fn two_product<S: Simd>(simd: S, a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
-    let product = a * b;
-    if has_fma(simd) {
-        return (product, a.mul_sub_precise(b, product));
-    }
-    let split = |x: f64x4<S>| {
-        let shifted = x * 134_217_729.0;
-        let high = shifted - (shifted - x);
-        (high, x - high)
-    };
-    let ((ah, al), (bh, bl)) = (split(a), split(b));
-    (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
+    if has_fma(simd) { lanes::two_prod::<true, _>(a, b) } else { lanes::two_prod::<false, _>(a, b) }
 }
 
 /// How far four spheres reach from a center.
@@ -85,8 +52,8 @@ struct Reach<S: Simd> {
 /// Along one axis: the offset of the center from the spheres', rounded; its square, and the rest of the square.
 #[inline(always)]
 fn axis<S: Simd>(simd: S, from: f64, to: [f64; 4]) -> (f64x4<S>, f64x4<S>, f64x4<S>) {
-    let (high, low) = two_sum(f64x4::splat(simd, from), -f64x4::simd_from(simd, to));
-    let (square, error) = two_square(simd, high);
+    let (high, low) = two_diff(f64x4::splat(simd, from), f64x4::simd_from(simd, to));
+    let (square, error) = two_product(simd, high, high);
     (high, square, error + (high + high) * low)
 }
 
@@ -100,7 +67,7 @@ fn reach<S: Simd>(simd: S, spheres: [&Sphere; 4], center: DVec3) -> Reach<S> {
     let (square, square_error) = two_sum(sum, z);
     let tail = (x_error + y_error) + (z_error + (sum_error + square_error));
     let root = square.sqrt();
-    let (again, again_error) = two_square(simd, root);
+    let (again, again_error) = two_product(simd, root, root);
     let inverse = f64x4::splat(simd, 1.0) / root;
     let rest = (((square - again) - again_error) + tail) * (inverse * 0.5);
     // At the very center the root is zero, and the product not a number.
@@ -162,7 +129,7 @@ pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) 
 }
 
 /// Beyond so many radii from the origin the rounding of the center moves it too far for the lower bound to be sharp.
-const FAR: f64 = 1_048_576.0;
+const FAR: f64 = power_of_two(20);
 
 /// [`certify`] for spheres so far from the origin that doubles lie far apart there: the lower bound is found on a copy near
 /// the origin, and of the doubles around the center the best is taken.
@@ -173,7 +140,7 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
     let mut lost = 0.0_f64;
     let moved = spheres.map(|sphere| {
         let to = sphere.center();
-        let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_diff(to[axis], origin[axis]));
+        let [x, y, z] = [0, 1, 2].map(|axis| two_diff(to[axis], origin[axis]));
         lost = lost.max(x.1.abs() + y.1.abs() + z.1.abs());
         Sphere::new(DVec3::new(x.0, y.0, z.0), sphere.radius()).expect("distances in an ordinary set are finite")
     });
@@ -181,7 +148,7 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
     let (bracket, bound) = certify(simd, &tangent.renumbered(), &moved);
     // Moving a center changes the radius by at most as much.
     let bound = if lost > 0.0 { (bound - lost * (1.0 + 8.0 * U)).next_down() } else { bound };
-    let [x, y, z] = [0, 1, 2].map(|axis| scalar::two_sum(origin[axis], bracket.center[axis]));
+    let [x, y, z] = [0, 1, 2].map(|axis| two_sum(origin[axis], bracket.center[axis]));
     let (center, rest) = (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1));
     let around = Bracket::around(simd, center, rest, spheres, tangent.support().len());
     (around, bound.max(spheres[0].radius()))
@@ -287,7 +254,7 @@ const NEGLIGIBLE: f64 = 1024.0 * U * U;
 const MAX_ROUNDS: usize = 4;
 
 /// Any positive number gives a true bound; this one a sharp bound if the gap is a few units in the last place.
-const BALANCE: f64 = 1.0 / 67_108_864.0; // 2^-26
+const BALANCE: f64 = power_of_two(-26);
 
 impl Bracket {
     /// Brackets the radius that encloses four spheres (of which only the first `count` differ) around one of the eight
@@ -351,8 +318,8 @@ pub(super) fn enclose_all(bracket: &mut Bracket, spheres: &[Sphere]) {
         if rough < bracket.low * (1.0 - 16.0 * U) {
             continue;
         }
-        let from = offset::<Wide>(sphere.center(), bracket.center);
-        let reach = dot(from, from).sqrt() + Wide::new(sphere.radius());
+        let from = difference::<Wide>(sphere.center(), bracket.center);
+        let reach = dot(&from, &from).sqrt() + Wide::new(sphere.radius());
         let error = if from == [Wide::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
         let up = |low: f64| {
             let sum = reach.high() + low;
@@ -367,18 +334,15 @@ pub(super) fn enclose_all(bracket: &mut Bracket, spheres: &[Sphere]) {
 /// 2^1025, which takes 35 limbs; their squares and the sum of three take 71, and the rounding of the root 68.
 type Number = Dyadic<72>;
 
-fn difference(a: f64, b: f64) -> Number {
-    Number::from_f64(a) - Number::from_f64(b)
-}
-
 fn square_of_distance(a: DVec3, b: DVec3) -> Number {
-    difference(a.x, b.x).square() + difference(a.y, b.y).square() + difference(a.z, b.z).square()
+    let offset = difference::<Number>(a, b);
+    dot(&offset, &offset)
 }
 
 /// Whether a sphere with radius `outer` contains one with radius `inner`, given the square of the distance of the centers.
 fn holds(outer: f64, inner: f64, square: &Number) -> bool {
-    asked();
-    let room = difference(outer, inner);
+    decided(Stage::Question);
+    let room = Number::from_difference(outer, inner);
     !room.sign().is_lt() && *square <= room.square()
 }
 
@@ -395,9 +359,9 @@ pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> b
 fn contains_fixed<const N: usize, const S: usize>(center: DVec3, radius: f64, sphere: &Sphere) -> Option<bool> {
     let c = sphere.center();
     let window = Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, radius, sphere.radius()])?;
-    let [from, to] = [center, c].map(|point| point.to_array().map(|x| window.fixed(x)));
-    let (offset, room) = (Fixed::difference(&from, &to), window.fixed(radius) - window.fixed(sphere.radius()));
-    let excess = Fixed::<S>::dot(&offset, &offset) - Fixed::product(&room, &room);
+    let offset = minus(&window.vector(center), &window.vector(c));
+    let room = window.fixed(radius) - window.fixed(sphere.radius());
+    let excess = dot::<_, _, Fixed<S>>(&offset, &offset) - Fixed::product(&room, &room);
     Some(room.sign().is_ge() && excess.sign().is_le())
 }
 
@@ -405,9 +369,8 @@ fn contains_fixed<const N: usize, const S: usize>(center: DVec3, radius: f64, sp
 fn reach_fixed<const N: usize, const S: usize>(center: DVec3, sphere: &Sphere) -> Option<f64> {
     let c = sphere.center();
     let window = Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, sphere.radius()])?;
-    let [from, to] = [center, c].map(|point| point.to_array().map(|x| window.fixed(x)));
-    let (offset, r) = (Fixed::difference(&from, &to), window.fixed(sphere.radius()));
-    let square = Fixed::<S>::dot(&offset, &offset);
+    let (offset, r) = (minus(&window.vector(center), &window.vector(c)), window.fixed(sphere.radius()));
+    let square: Fixed<S> = dot(&offset, &offset);
     // r + √square is a root of x² - 2 r x + (r² - square).
     let rest = Fixed::<S>::product(&r, &r) - square;
     Some(Fixed::root(&r, false, &square, &Fixed::<1>::ONE, &rest, window.exponent()))
@@ -417,7 +380,7 @@ fn reach_fixed<const N: usize, const S: usize>(center: DVec3, sphere: &Sphere) -
 #[cold]
 #[inline(never)]
 pub(super) fn smallest_radius(center: DVec3, sphere: &Sphere) -> f64 {
-    asked();
+    decided(Stage::Question);
     // The reach rounded to nearest: that double or the next.
     let nearest = reach_fixed::<1, 2>(center, sphere)
         .or_else(|| reach_fixed::<2, 4>(center, sphere))
@@ -445,12 +408,12 @@ fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Optio
     // The differences of the coordinates and, in the last lane, of the radii: exactly high + low.
     let row = |s: &Sphere| [s.center().x, s.center().y, s.center().z, s.radius()];
     let from = f64x4::simd_from(simd, row(a));
-    let (p, p_low) = two_sum(f64x4::simd_from(simd, row(b)), -from);
-    let (square, error) = two_square(simd, p);
+    let (p, p_low) = two_diff(f64x4::simd_from(simd, row(b)), from);
+    let (square, error) = two_product(simd, p, p);
     let error = error + (p + p) * p_low;
     // Their distance, length + length_low.
-    let (sum, sum_error) = scalar::two_sum(square[0], square[1]);
-    let (sum, rest) = scalar::two_sum(sum, square[2]);
+    let (sum, sum_error) = two_sum(square[0], square[1]);
+    let (sum, rest) = two_sum(sum, square[2]);
     let tail = (error[0] + error[1]) + (error[2] + (sum_error + rest));
     let length = sum.sqrt();
     let inverse = 1.0 / length;
@@ -458,14 +421,14 @@ fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Optio
     let length_low = (((sum - again) - again_error) + tail) * (0.5 * inverse);
     // The share of the way from a to b, (distance + difference of the radii) / 2 distance, as share + share_low.
     let share = 0.5 + (0.5 * p[3]) * inverse;
-    let (half, half_low) = scalar::two_sum(0.5 * length, 0.5 * p[3]);
+    let (half, half_low) = two_sum(0.5 * length, 0.5 * p[3]);
     let (part, part_low) = two_prod::<FMA>(share, length);
     let left = (half - part) + (half_low - part_low) + (0.5 * p_low[3] + length_low * (0.5 - share));
     let share_low = left * inverse;
     let nearest = length * share.min(1.0 - share);
     // The radius is half of distance + radii.
-    let (radii, radii_low) = scalar::two_sum(a.radius(), b.radius());
-    let (twice, twice_low) = scalar::two_sum(length, radii);
+    let (radii, radii_low) = two_sum(a.radius(), b.radius());
+    let (twice, twice_low) = two_sum(length, radii);
     let radius = 0.5 * twice;
     let radius_low = 0.5 * (twice_low + (radii_low + length_low));
     let apart = nearest > radius * NEARLY_INSIDE;
@@ -507,11 +470,11 @@ fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Optio
 
 /// With a larger error of the radius, as a share of it, the reaches are computed anew at the center rounded to doubles.
 /// (With a smaller one, hardly one radius in a thousand is so close to a double that exact integers are asked.)
-const PAIR_ERROR: f64 = 1.0 / 18_446_744_073_709_551_616.0; // 2^-64
+const PAIR_ERROR: f64 = power_of_two(-64);
 
 /// With the center closer than this to that of a sphere, as a share of the radius, the bend of the distance is not
 /// small beside a unit in the last place.
-const NEARLY_INSIDE: f64 = 1.0 / 1_048_576.0;
+const NEARLY_INSIDE: f64 = power_of_two(-20);
 
 /// The smallest double of the bracket that encloses all spheres. Asks integers at most three questions a sphere.
 #[cold]

@@ -2,9 +2,9 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
+use rt_math::exact::U;
 
 use super::basis::Tangent;
-use super::certify::U;
 use super::lanes::Lanes;
 use crate::Sphere;
 

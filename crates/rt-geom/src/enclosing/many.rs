@@ -2,10 +2,10 @@
 
 use fearless_simd::{Simd, f64x8, prelude::*, u64x8};
 use glam::DVec3;
+use rt_math::exact::U;
 
 use super::ORDINARY;
 use super::basis::Tangent;
-use super::certify::U;
 use super::few::{TOUCHES, pivot};
 use super::lanes::{LANES, Lanes, columns, marked, measure};
 use crate::Sphere;

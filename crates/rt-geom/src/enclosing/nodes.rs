@@ -10,9 +10,9 @@ use std::ops::Range;
 use fearless_simd::{Level, Simd, f64x8, prelude::*};
 use glam::DVec3;
 use rayon::prelude::*;
+use rt_math::exact::U;
 
 use super::basis::Tangent;
-use super::certify::U;
 use super::few::pivot;
 use super::lanes::{LANES, Lanes, columns, measure};
 use super::{ORDINARY, ORDINARY_SQUARES, enclosing_sphere};

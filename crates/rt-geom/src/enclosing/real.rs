@@ -3,10 +3,18 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use rt_math::exact::DoubleDouble;
+use rt_math::exact::vector::{FromDifference, Product};
 
 /// A real number at some precision.
 pub(super) trait Real:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + FromDifference
+    + Product<Self, Self>
 {
     const ZERO: Self;
     const ONE: Self;
@@ -14,8 +22,6 @@ pub(super) trait Real:
     /// some ten rounding errors. No proof rests on it.
     const INSIDE: f64;
     fn from(value: f64) -> Self;
-    /// `a - b` at this precision.
-    fn difference(a: f64, b: f64) -> Self;
     /// The square root; NaN if negative.
     fn sqrt(self) -> Self;
     fn is_finite(self) -> bool;
@@ -32,10 +38,6 @@ impl Real for f64 {
     #[inline(always)]
     fn from(value: f64) -> Self {
         value
-    }
-    #[inline(always)]
-    fn difference(a: f64, b: f64) -> Self {
-        a - b
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -65,9 +67,6 @@ impl Real for Wide {
     fn from(value: f64) -> Self {
         Self::new(value)
     }
-    fn difference(a: f64, b: f64) -> Self {
-        Self::difference(a, b)
-    }
     fn sqrt(self) -> Self {
         if self.high() < 0.0 { Self::new(f64::NAN) } else { Self::sqrt(self) }
     }
@@ -80,14 +79,4 @@ impl Real for Wide {
     fn round(self) -> f64 {
         self.high()
     }
-}
-
-#[inline(always)]
-pub(super) fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(super) fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

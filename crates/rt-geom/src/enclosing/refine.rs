@@ -4,10 +4,12 @@
 //! is known far beyond its rounding.
 
 use glam::DVec3;
+use rt_math::exact::U;
+use rt_math::exact::vector::dot;
 
 use super::basis::Tangent;
-use super::certify::{Bracket, U, enclose_all};
-use super::real::{Real, Wide, dot};
+use super::certify::{Bracket, enclose_all};
+use super::real::{Real, Wide};
 use crate::Sphere;
 
 /// Returns the support, a bracket around the center rounded to doubles, and a lower bound.
@@ -88,7 +90,7 @@ fn bracket(spheres: &[Sphere], center: DVec3) -> Bracket {
 fn lower_bound(tangent: &Tangent<Wide>, spheres: &[Sphere], bracket: &Bracket) -> f64 {
     let origin = bracket.center;
     let (center, _) = tangent.sphere(spheres, origin);
-    let away = dot(center, center).sqrt().round();
+    let away = dot(&center, &center).sqrt().round();
     let mut sum = Wide::ZERO;
     let mut total = Wide::ZERO;
     let mut pull = [Wide::ZERO; 3];
@@ -101,7 +103,7 @@ fn lower_bound(tangent: &Tangent<Wide>, spheres: &[Sphere], bracket: &Bracket) -
             continue;
         }
         let (from, _) = tangent.sphere(spheres, sphere.center());
-        let distance = dot(from, from).sqrt();
+        let distance = dot(&from, &from).sqrt();
         let share = weight * distance;
         sum = sum + share * (distance + Wide::new(sphere.radius()));
         total = total + share;
@@ -112,7 +114,7 @@ fn lower_bound(tangent: &Tangent<Wide>, spheres: &[Sphere], bracket: &Bracket) -
     let mean = sum / total;
     // All spheres reach at most this far from the center.
     let most = (bracket.high + away) * (1.0 + 4.0 * U);
-    let pull = dot(pull, pull).sqrt().round() / total.round() + 256.0 * U * U;
+    let pull = dot(&pull, &pull).sqrt().round() / total.round() + 256.0 * U * U;
     // Spheres that all are inside both this sphere and the minimal one hold the two centers together.
     let mut bound = largest;
     for _ in 0..2 {

@@ -6,22 +6,23 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rt_math::Roots;
-use rt_math::exact::{DoubleDouble, Dyadic, Fixed, Window, round_if_certain};
+use rt_math::exact::vector::{cross, difference, dot, minus};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, power_of_two, round_if_certain};
 use rt_math::fma_dispatch;
 
-use super::{Side, Sphere, U};
+use super::{Side, Sphere};
 use crate::Ray;
 use crate::ray::{holds, max_abs};
 use crate::stage::{Stage, decided};
 
 /// Up to here in magnitude the coordinates relative to the center must be for double-double: `2^300`.
-const FARTHEST: f64 = f64::from_bits((1023 + 300) << 52);
+const FARTHEST: f64 = power_of_two(300);
 
 /// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 5).
-const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+const UNDERFLOW: f64 = power_of_two(-500);
 
 /// Swallows what underflow does to a `t`: `2^-1000`.
-const UNDERFLOW_T: f64 = f64::from_bits((1023 - 1000) << 52);
+const UNDERFLOW_T: f64 = power_of_two(-1000);
 
 /// Returns the closest root in the range; slow path, always decides.
 #[cold]
@@ -102,11 +103,10 @@ impl<const N: usize, const S: usize, const Q: usize> Equation<N, S, Q> {
         let (o, center, d) = (ray.origin(), sphere.center, ray.direction());
         let window = Window::<N>::around(&[o.x, o.y, o.z, center.x, center.y, center.z, sphere.radius])?;
         let direction_window = Window::<N>::around(&d.to_array())?;
-        let [o, center] = [o, center].map(|point| point.to_array().map(|x| window.fixed(x)));
-        let (w, r) = (Fixed::difference(&o, &center), window.fixed(sphere.radius));
-        let d = d.to_array().map(|x| direction_window.fixed(x));
-        let (a, b) = (Fixed::dot(&d, &d), Fixed::dot(&w, &d));
-        let c = Fixed::dot(&w, &w) - Fixed::product(&r, &r);
+        let (w, r) = (minus(&window.vector(o), &window.vector(center)), window.fixed(sphere.radius));
+        let d = direction_window.vector(d);
+        let (a, b) = (dot(&d, &d), dot(&w, &d));
+        let c = dot::<_, _, Fixed<S>>(&w, &w) - Fixed::product(&r, &r);
         let delta = Fixed::product(&b, &b) - Fixed::product(&a, &c);
         Some(Self { a, b, c, delta, exponent: window.exponent() - direction_window.exponent() })
     }
@@ -153,9 +153,8 @@ impl<const N: usize, const S: usize, const Q: usize> Equation<N, S, Q> {
 fn fixed_side<const N: usize, const S: usize>(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
     let c = sphere.center;
     let window = Window::<N>::around(&[point.x, point.y, point.z, c.x, c.y, c.z, sphere.radius])?;
-    let [p, c] = [point, c].map(|point| point.to_array().map(|x| window.fixed(x)));
-    let (w, r) = (Fixed::difference(&p, &c), window.fixed(sphere.radius));
-    Some((Fixed::<S>::dot(&w, &w) - Fixed::product(&r, &r)).sign())
+    let (w, r) = (minus(&window.vector(point), &window.vector(c)), window.fixed(sphere.radius));
+    Some((dot::<_, _, Fixed<S>>(&w, &w) - Fixed::product(&r, &r)).sign())
 }
 
 fma_dispatch! {
@@ -172,15 +171,11 @@ fn double_double_roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Op
     if !(far + sphere.radius <= FARTHEST && (1e-30..=1e30).contains(&reach)) {
         return None;
     }
-    let w = [
-        DoubleDouble::<FMA>::difference(o.x, c.x),
-        DoubleDouble::<FMA>::difference(o.y, c.y),
-        DoubleDouble::<FMA>::difference(o.z, c.z),
-    ];
+    let w = difference::<DoubleDouble<FMA>>(o, c);
     let d = d.to_array().map(DoubleDouble::<FMA>::new);
-    let x = [w[1] * d[2] - w[2] * d[1], w[2] * d[0] - w[0] * d[2], w[0] * d[1] - w[1] * d[0]];
-    let x_square = dot(x, x);
-    let a = dot(d, d);
+    let x = cross(&w, &d);
+    let x_square = dot(&x, &x);
+    let a = dot(&d, &d);
     let radius_square = DoubleDouble::<FMA>::product(sphere.radius, sphere.radius);
     let reach_square = a * radius_square;
     let delta = reach_square - x_square;
@@ -195,11 +190,11 @@ fn double_double_roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Op
         return None;
     }
 
-    let b = dot(w, d);
+    let b = dot(&w, &d);
     let root = delta.sqrt();
     let q = if b.high() < 0.0 { root - b } else { root + b };
     let q_error = 32.0 * U * U * product + 12.0 * U * U * q.high() + error / root.high();
-    let w_square = dot(w, w);
+    let w_square = dot(&w, &w);
     let c = w_square - radius_square;
     let c_error = 32.0 * U * U * (w_square.high() + radius_square.high()) + UNDERFLOW;
     let (small, large) = (c / q, q / a);
@@ -213,24 +208,13 @@ fn double_double_roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Op
 
 /// Compares the distance of a point from the center with the radius, in double-double.
 fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
-    let w = [
-        Number::difference(point.x, sphere.center.x),
-        Number::difference(point.y, sphere.center.y),
-        Number::difference(point.z, sphere.center.z),
-    ];
-    let (square, radius_square) = (dot(w, w), Number::product(sphere.radius, sphere.radius));
+    // Cold, so without FMA.
+    let w = difference::<DoubleDouble<false>>(point, sphere.center);
+    let (square, radius_square) = (dot(&w, &w), DoubleDouble::product(sphere.radius, sphere.radius));
     let excess = (square - radius_square).high();
     let error = 32.0 * U * U * (square.high() + radius_square.high()) + UNDERFLOW;
     let in_range = max_abs(point - sphere.center) + sphere.radius <= FARTHEST;
     (in_range && excess.abs() > error).then(|| excess.total_cmp(&0.0))
-}
-
-/// Cold stages need no FMA.
-type Number = DoubleDouble<false>;
-
-#[inline(always)]
-fn dot<const FMA: bool>(v: [DoubleDouble<FMA>; 3], w: [DoubleDouble<FMA>; 3]) -> DoubleDouble<FMA> {
-    v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
 }
 
 /// Limbs for the roots. Coordinates relative to the center are multiples of 2^-1074 below 2^1025. `Delta`, of degree
@@ -242,13 +226,11 @@ type RootInteger = Dyadic<200>;
 #[inline(never)]
 fn integer_roots(sphere: &Sphere, ray: &Ray) -> Roots {
     decided(Stage::Integers);
-    let w = difference(ray.origin(), sphere.center);
+    let w = difference::<RootInteger>(ray.origin(), sphere.center);
     let d = ray.direction().to_array().map(RootInteger::from_f64);
     let r = RootInteger::from_f64(sphere.radius);
-    let a = integer_dot(&d, &d);
-    let minus_b = -integer_dot(&w, &d);
-    let cross = |j: usize, k: usize| (&w[j] * &d[k] - &w[k] * &d[j]).square();
-    let delta = &a * &r.square() - (cross(1, 2) + cross(2, 0) + cross(0, 1));
+    let (a, minus_b, x) = (dot(&d, &d), -dot(&w, &d), cross(&w, &d));
+    let delta = &a * &r.square() - dot(&x, &x);
     match delta.sign() {
         Ordering::Less => Roots::None,
         Ordering::Equal => Roots::One(RootInteger::quotient(&minus_b, &a)),
@@ -263,16 +245,8 @@ fn integer_roots(sphere: &Sphere, ray: &Ray) -> Roots {
 type SideInteger = Dyadic<68>;
 
 fn integer_side(sphere: &Sphere, point: DVec3) -> Ordering {
-    let w = difference::<68>(point, sphere.center);
-    (integer_dot(&w, &w) - SideInteger::from_f64(sphere.radius).square()).sign()
-}
-
-fn difference<const LIMBS: usize>(p: DVec3, q: DVec3) -> [Dyadic<LIMBS>; 3] {
-    [0, 1, 2].map(|i| Dyadic::from_f64(p[i]) - Dyadic::from_f64(q[i]))
-}
-
-fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> Dyadic<LIMBS> {
-    &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
+    let w = difference::<SideInteger>(point, sphere.center);
+    (dot(&w, &w) - SideInteger::from_f64(sphere.radius).square()).sign()
 }
 
 #[cfg(test)]

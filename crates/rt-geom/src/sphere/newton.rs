@@ -12,12 +12,12 @@
 
 use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
 use rt_math::Roots;
-use rt_math::exact::round_if_certain;
+use rt_math::exact::{U, round_if_certain, two_diff, two_sum};
 
-use super::{Approximation, Crossing, Line, Place, Sphere, U, exact};
+use super::{Approximation, Crossing, Line, Place, Sphere, exact};
 use crate::Ray;
 use crate::ray::holds;
-use crate::simd::dispatch;
+use crate::simd::{dispatch, two_prod};
 
 /// The error of half the residual, relative to `w.w + r²`.
 const RESIDUAL_ERROR: f64 = 160.0 * U * U;
@@ -121,7 +121,7 @@ fn residual<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, t: f6
     let center = f64x4::simd_from(simd, [c.x, c.y, c.z, sphere.radius]);
     let direction = f64x4::simd_from(simd, [d.x, d.y, d.z, 0.0]);
     // The squares of the components of w + t d, as square + low.
-    let (w, w_low) = two_sum(origin, -center);
+    let (w, w_low) = two_diff(origin, center);
     let (step, step_low) = two_prod::<FMA, S>(f64x4::splat(simd, t), direction);
     let (high, error) = two_sum(w, step);
     let low = error + (w_low + step_low);
@@ -134,31 +134,6 @@ fn residual<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, t: f6
     let low = low_of_z_r.mul_add(sign, low);
     let total = |lanes: f64x2<S>| <[f64; 2]>::from(lanes).into_iter().sum::<f64>();
     (total(sum) + total(error)) + total(low)
-}
-
-/// [`rt_math::exact::two_sum`] in every lane.
-#[inline(always)]
-fn two_sum<S: Simd, V: SimdFloat<S, Element = f64>>(a: V, b: V) -> (V, V) {
-    let value = a + b;
-    let b_part = value - a;
-    let a_part = value - b_part;
-    (value, (a - a_part) + (b - b_part))
-}
-
-/// [`rt_math::exact::two_prod`] in every lane.
-#[inline(always)]
-fn two_prod<const FMA: bool, S: Simd>(a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
-    let value = a * b;
-    if FMA {
-        return (value, a.mul_sub_precise(b, value));
-    }
-    let split = |a: f64x4<S>| {
-        let scaled = a * 134_217_729.0; // 2^27 + 1
-        let high = scaled - (scaled - a);
-        (high, a - high)
-    };
-    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
-    (value, ((a_high * b_high - value) + a_high * b_low + a_low * b_high) + a_low * b_low)
 }
 
 #[cfg(test)]

@@ -7,39 +7,19 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
-use rt_math::exact::{DoubleDouble, Dyadic, Fixed, Window};
+use rt_math::exact::vector::{cross, difference, dot, minus};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, power_of_two, power_of_two_near_inverse};
 
-use super::{FARTHEST, Triangle, U, Verdict};
+use super::{FARTHEST, Triangle, Verdict};
 use crate::Ray;
 use crate::ray::{holds, larger, max_abs};
 use crate::stage::{Stage, decided};
 
 /// Swallows all errors of underflow: `2^-500` (`docs/numerics.md`, section 6).
-const UNDERFLOW: f64 = f64::from_bits((1023 - 500) << 52);
+const UNDERFLOW: f64 = power_of_two(-500);
 
 /// Cold stages need no FMA.
 type Number = DoubleDouble<false>;
-
-/// A vector in double-double.
-pub(crate) type Numbers<const FMA: bool> = [DoubleDouble<FMA>; 3];
-
-/// `p - q`, exactly.
-#[inline(always)]
-pub(crate) fn difference<const FMA: bool>(p: DVec3, q: DVec3) -> Numbers<FMA> {
-    [0, 1, 2].map(|i| DoubleDouble::difference(p[i], q[i]))
-}
-
-/// `v x w`; component `i` is off by at most `15 u² (|v_j w_k| + |v_k w_j|)`.
-#[inline(always)]
-pub(crate) fn cross<const FMA: bool>(v: &Numbers<FMA>, w: &Numbers<FMA>) -> Numbers<FMA> {
-    [v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]]
-}
-
-/// `v . w`, off by at most `21 u²` times the sum of the magnitudes of its terms.
-#[inline(always)]
-pub(crate) fn dot<const FMA: bool>(v: &Numbers<FMA>, w: &Numbers<FMA>) -> DoubleDouble<FMA> {
-    v[0] * w[0] + v[1] * w[1] + v[2] * w[2]
-}
 
 /// Returns the hit's `t` if it is in the range; slow path, always decides.
 #[cold]
@@ -140,7 +120,7 @@ fn verdict(signs: [Ordering; 4]) -> Option<Verdict> {
 
 /// The signs of the volumes and of their sum, in double-double, if all are certain.
 fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> {
-    let [a, b, c] = triangle.vertices.map(|vertex| difference(vertex, ray.origin()));
+    let [a, b, c] = triangle.vertices.map(|vertex| difference::<Number>(vertex, ray.origin()));
     let d = ray.direction().to_array().map(Number::new);
     let most = |i: usize| larger(a[i].high().abs(), larger(b[i].high().abs(), c[i].high().abs()));
     let size = most(0) + most(1) + most(2);
@@ -172,11 +152,11 @@ impl<const N: usize, const A: usize, const V: usize> FixedVolumes<N, A, V> {
         let points = [ray.origin(), triangle.vertices[0], triangle.vertices[1], triangle.vertices[2]];
         let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
         let direction_window = Window::<N>::around(&ray.direction().to_array())?;
-        let [o, a, b, c] = points.map(|point| point.to_array().map(|x| window.fixed(x)));
-        let [a, b, c] = [a, b, c].map(|point| Fixed::difference(&point, &o));
-        let planes = [Fixed::cross(&b, &c), Fixed::cross(&c, &a), Fixed::cross(&a, &b)];
-        let d = ray.direction().to_array().map(|x| direction_window.fixed(x));
-        let volumes = [Fixed::dot(&planes[0], &d), Fixed::dot(&planes[1], &d), Fixed::dot(&planes[2], &d)];
+        let [o, a, b, c] = points.map(|point| window.vector(point));
+        let [a, b, c] = [a, b, c].map(|point| minus(&point, &o));
+        let planes: [[Fixed<A>; 3]; 3] = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+        let d = direction_window.vector(ray.direction());
+        let volumes = [dot(&planes[0], &d), dot(&planes[1], &d), dot(&planes[2], &d)];
         Some(Self { vertex: a, planes, volumes, exponent: window.exponent() - direction_window.exponent() })
     }
 
@@ -187,7 +167,7 @@ impl<const N: usize, const A: usize, const V: usize> FixedVolumes<N, A, V> {
 
     #[inline(always)]
     fn height(&self) -> Fixed<V> {
-        Fixed::dot(&self.planes[0], &self.vertex)
+        dot(&self.planes[0], &self.vertex)
     }
 }
 
@@ -280,9 +260,9 @@ struct IntegerVolumes {
 impl IntegerVolumes {
     fn new(triangle: &Triangle, ray: &Ray) -> Self {
         let direction = ray.direction().to_array().map(Integer::from_f64);
-        let [a, b, c] = triangle.vertices.map(|vertex| integer_difference(vertex, ray.origin()));
-        let planes = [integer_cross(&b, &c), integer_cross(&c, &a), integer_cross(&a, &b)];
-        let volumes = [0, 1, 2].map(|i| integer_dot(&planes[i], &direction));
+        let [a, b, c] = triangle.vertices.map(|vertex| difference::<Integer>(vertex, ray.origin()));
+        let planes = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+        let volumes = [0, 1, 2].map(|i| dot(&planes[i], &direction));
         Self { vertex: a, planes, volumes }
     }
 
@@ -291,7 +271,7 @@ impl IntegerVolumes {
     }
 
     fn height(&self) -> Integer {
-        integer_dot(&self.planes[0], &self.vertex)
+        dot(&self.planes[0], &self.vertex)
     }
 }
 
@@ -300,7 +280,7 @@ type NormalInteger = Dyadic<68>;
 
 fn integer_normal(triangle: &Triangle) -> [NormalInteger; 3] {
     let [a, b, c] = triangle.vertices;
-    integer_cross(&integer_difference(b, a), &integer_difference(c, a))
+    cross(&difference::<NormalInteger>(b, a), &difference(c, a))
 }
 
 /// Whether the triangle has no area; slow path, always decides.
@@ -314,8 +294,8 @@ pub(crate) fn is_degenerate(triangle: &Triangle) -> bool {
 
 fn fixed_is_degenerate<const N: usize, const A: usize>(triangle: &Triangle) -> Option<bool> {
     let window = Window::<N>::around(triangle.vertices.map(|vertex| vertex.to_array()).as_flattened())?;
-    let [a, b, c] = triangle.vertices.map(|vertex| vertex.to_array().map(|x| window.fixed(x)));
-    let normal = Fixed::<A>::cross(&Fixed::difference(&b, &a), &Fixed::difference(&c, &a));
+    let [a, b, c] = triangle.vertices.map(|vertex| window.vector(vertex));
+    let normal: [Fixed<A>; 3] = cross(&minus(&b, &a), &minus(&c, &a));
     Some(normal.iter().all(|part| part.sign() == Ordering::Equal))
 }
 
@@ -324,13 +304,13 @@ fn fixed_is_degenerate<const N: usize, const A: usize>(triangle: &Triangle) -> O
 /// Each component is off by at most `1.01 u` of the largest.
 pub(super) fn scaled_normal(triangle: &Triangle) -> Option<DVec3> {
     let [a, b, c] = triangle.vertices;
-    let (e, f): (Numbers<false>, _) = (difference(b, a), difference(c, a));
-    let n = DVec3::from_array(cross(&e, &f).map(Number::high));
+    let n = cross(&difference::<Number>(b, a), &difference(c, a));
+    let n = DVec3::from_array(n.map(Number::high));
     let largest = larger(max_abs(b - a), max_abs(c - a));
     // Here the error of the double-doubles, 32 u² largest², is below 2^-61 of the normal.
     let certain = (1e-70..=1e70).contains(&largest) && max_abs(n) >= 1e-12 * largest * largest;
     let n = if certain { n } else { integer_scaled_normal(triangle)? };
-    Some(n * crate::sphere::power_of_two_near_inverse(max_abs(n)))
+    Some(n * power_of_two_near_inverse(max_abs(n)))
 }
 
 #[cold]
@@ -345,19 +325,6 @@ fn integer_scaled_normal(triangle: &Triangle) -> Option<DVec3> {
         v if max_abs(v) > 1.0 => Some(rounded(-1250)),
         _ => Some(rounded(1300)),
     }
-}
-
-pub(crate) fn integer_difference<const LIMBS: usize>(p: DVec3, q: DVec3) -> [Dyadic<LIMBS>; 3] {
-    [0, 1, 2].map(|i| Dyadic::from_f64(p[i]) - Dyadic::from_f64(q[i]))
-}
-
-pub(crate) fn integer_cross<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> [Dyadic<LIMBS>; 3] {
-    let part = |j: usize, k: usize| &v[j] * &w[k] - &v[k] * &w[j];
-    [part(1, 2), part(2, 0), part(0, 1)]
-}
-
-pub(crate) fn integer_dot<const LIMBS: usize>(v: &[Dyadic<LIMBS>; 3], w: &[Dyadic<LIMBS>; 3]) -> Dyadic<LIMBS> {
-    &v[0] * &w[0] + &v[1] * &w[1] + &v[2] * &w[2]
 }
 
 /// The correctly rounded `t`, by integers of any size alone: the oracle of the other stages.

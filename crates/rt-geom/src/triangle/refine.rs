@@ -12,10 +12,10 @@
 //! the bounds.
 
 use glam::DVec3;
-use rt_math::exact::{round_if_certain, two_prod, two_sum};
+use rt_math::exact::{U, round_if_certain, two_prod, two_sum};
 use rt_math::fma_dispatch;
 
-use super::{Crossing, Line, Triangle, U, exact};
+use super::{Crossing, Line, Triangle, exact};
 use crate::Ray;
 use crate::ray::{cross, dot, holds, max_abs};
 

@@ -7,7 +7,7 @@ use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::stage::{Stage, decided};
-use super::{Dyadic, power_of_two};
+use super::{Dyadic, power_of_two, vector};
 
 /// Bound of the error of a dot product: this part of the sum of the magnitudes of its terms; `3.01 * 2^-53` is proved.
 const ERROR: f64 = power_of_two(-51);
@@ -105,9 +105,8 @@ fn integer_sign(a: DVec3, b: DVec3, n: DVec3) -> Option<Ordering> {
 }
 
 fn sized_sign<const LIMBS: usize>(a: DVec3, b: DVec3, n: DVec3) -> Ordering {
-    let [a, b, n] = [a, b, n].map(|v| v.to_array().map(Dyadic::<LIMBS>::from_f64));
-    let term = |i: usize| &(&a[i] - &b[i]) * &n[i];
-    (term(0) + term(1) + term(2)).sign()
+    let n = n.to_array().map(Dyadic::<LIMBS>::from_f64);
+    vector::dot(&vector::difference::<Dyadic<LIMBS>>(a, b), &n).sign()
 }
 
 #[cfg(test)]

@@ -103,8 +103,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     }
 
     /// The magnitude.
-    #[must_use]
-    pub fn abs(mut self) -> Self {
+    fn abs(mut self) -> Self {
         self.negative = false;
         self
     }
@@ -113,12 +112,6 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     #[must_use]
     pub fn square(&self) -> Self {
         self * self
-    }
-
-    /// The number of live limbs: at most `LIMBS`.
-    #[must_use]
-    pub fn limbs(&self) -> usize {
-        self.len
     }
 
     /// The correctly rounded double: ties to even, subnormals and overflow to infinity included. Zero gives +0.0, and a

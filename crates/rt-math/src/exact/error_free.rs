@@ -1,14 +1,20 @@
 //! Error-free transformations: a sum or product of two doubles as the rounded result and its exact error.
 //!
 //! Each returns `(value, error)` with `value` the correctly rounded result and `value + error` the exact one. The
-//! sums hold for all finite operands whose sum does not overflow; the product in the range stated there.
+//! sums hold for all finite operands whose sum does not overflow; the product in the range stated there. Sums and
+//! [`two_prod_with`] take vectors of doubles as well, and do the same in every lane.
+
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// 2⁻⁵³, the unit roundoff: the relative error of one rounded operation is at most this.
+pub const U: f64 = f64::EPSILON / 2.0;
 
 /// Returns `RN(a + b)` and its error: `a + b = value + error` exactly, unless the sum overflows.
 ///
 /// Source: D. Knuth, "The Art of Computer Programming", vol. 2, section 4.2.2, theorem B.
 #[inline(always)]
 #[must_use]
-pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub fn two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
     let value = a + b;
     let b_part = value - a;
     let a_part = value - b_part;
@@ -18,7 +24,7 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
 /// Returns `RN(a - b)` and its error: `a - b = value + error` exactly, unless the difference overflows.
 #[inline(always)]
 #[must_use]
-pub fn two_diff(a: f64, b: f64) -> (f64, f64) {
+pub fn two_diff<T: Copy + Add<Output = T> + Sub<Output = T> + Neg<Output = T>>(a: T, b: T) -> (T, T) {
     two_sum(a, -b)
 }
 
@@ -49,9 +55,24 @@ pub fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
 #[inline(always)]
 #[must_use]
 pub fn two_prod<const FMA: bool>(a: f64, b: f64) -> (f64, f64) {
-    let value = a * b;
+    two_prod_with::<FMA, _>(
+        a,
+        b,
+        #[inline(always)]
+        |a, b, c| a.mul_add(b, -c),
+    )
+}
+
+/// [`two_prod`] of numbers of any kind, vectors of doubles for one: `fused(a, b, c)` is `a b - c`, rounded once.
+#[inline(always)]
+#[must_use]
+pub fn two_prod_with<const FMA: bool, T>(a: T, b: T, fused: impl FnOnce(T, T, T) -> T) -> (T, T)
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Mul<f64, Output = T>,
+{
+    let value: T = a * b;
     if FMA {
-        return (value, a.mul_add(b, -value));
+        return (value, fused(a, b, value));
     }
     let (a_high, a_low) = split(a);
     let (b_high, b_low) = split(b);
@@ -75,9 +96,9 @@ pub fn remainder<const FMA: bool>(z: f64, x: f64, y: f64) -> f64 {
 
 /// Splits a double of magnitude at most 2⁹⁹⁵ into two of at most 26 bits each, `a = high + low`.
 #[inline(always)]
-fn split(a: f64) -> (f64, f64) {
+fn split<T: Copy + Sub<Output = T> + Mul<f64, Output = T>>(a: T) -> (T, T) {
     const FACTOR: f64 = 134_217_729.0; // 2^27 + 1
-    let scaled = FACTOR * a;
+    let scaled = a * FACTOR;
     let high = scaled - (scaled - a);
     (high, a - high)
 }

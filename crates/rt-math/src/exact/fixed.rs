@@ -12,11 +12,14 @@
 use core::cmp::Ordering;
 use core::ops::{Add, Neg, Sub};
 
+use glam::DVec3;
+
 use super::double_double::DoubleDouble;
 use super::dyadic::Dyadic;
 use super::enclosure::{Leading, enclose, high, low, round};
-use super::power_of_two;
+use super::error_free::U;
 use super::round::round_if_certain;
+use super::scaling::power_of_two;
 use crate::fma_dispatch;
 
 /// An integer of `64 LIMBS` bits in two's complement. Sums and differences wrap: the caller's window excludes it.
@@ -86,28 +89,6 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         let filling = if product[A + B - 1] >> 63 == 1 { u64::MAX } else { 0 };
         product[A + B..].fill(filling);
         Self(product)
-    }
-
-    /// The cross product of two vectors; `LIMBS` must be at least `A + B`.
-    #[inline(always)]
-    #[must_use]
-    pub fn cross<const A: usize, const B: usize>(a: &[Fixed<A>; 3], b: &[Fixed<B>; 3]) -> [Self; 3] {
-        let part = |j: usize, k: usize| Self::product(&a[j], &b[k]) - Self::product(&a[k], &b[j]);
-        [part(1, 2), part(2, 0), part(0, 1)]
-    }
-
-    /// The dot product of two vectors; `LIMBS` must be at least `A + B`.
-    #[inline(always)]
-    #[must_use]
-    pub fn dot<const A: usize, const B: usize>(a: &[Fixed<A>; 3], b: &[Fixed<B>; 3]) -> Self {
-        Self::product(&a[0], &b[0]) + Self::product(&a[1], &b[1]) + Self::product(&a[2], &b[2])
-    }
-
-    /// The difference of two vectors.
-    #[inline(always)]
-    #[must_use]
-    pub fn difference(a: &[Self; 3], b: &[Self; 3]) -> [Self; 3] {
-        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
     }
 
     /// The same number with more limbs.
@@ -280,7 +261,7 @@ const SAFE: core::ops::Range<i32> = -1018..1018;
 const SMALL: i32 = 400;
 
 /// The error of [`rounded_quotient`] and [`rounded_root`] before the last rounding, relative: `docs/numerics.md`, section 1.
-const ERROR: f64 = 64.0 * (f64::EPSILON / 2.0) * (f64::EPSILON / 2.0);
+const ERROR: f64 = 64.0 * U * U;
 
 fma_dispatch! {
     /// The quotient of two numbers in `1..2`, correctly rounded, if that is certain.
@@ -419,6 +400,13 @@ impl<const LIMBS: usize> Window<LIMBS> {
         }
         let magnitude = Fixed(limbs);
         if x.is_sign_negative() { -magnitude } else { magnitude }
+    }
+
+    /// The components of a vector, as [`fixed`](Self::fixed) gives them.
+    #[inline(always)]
+    #[must_use]
+    pub fn vector(self, v: DVec3) -> [Fixed<LIMBS>; 3] {
+        [self.fixed(v.x), self.fixed(v.y), self.fixed(v.z)]
     }
 
     /// The bits of the number below the unit.

@@ -11,7 +11,8 @@
 //!    than double-double;
 //! 4. *integers*: [`Dyadic`], exact for every finite input, over- and underflow included; cold.
 //!
-//! Nothing here allocates, and every loop is bounded by the number of limbs.
+//! [`vector`] has the operations of three-vectors over any of these numbers. Nothing here allocates, and every loop is
+//! bounded by the number of limbs.
 //!
 //! Functions that multiply take the constant parameter `FMA`: whether to use the fused multiply-add, which is one
 //! instruction where the processor has it and a slow library call elsewhere. The bits of the result do not depend on
@@ -29,23 +30,23 @@
 //! assert_eq!(exact, Integer::from_f64(product) + Integer::from_f64(error));
 //! ```
 
+mod dispatch;
 mod dot;
 mod double_double;
 mod dyadic;
 mod enclosure;
 mod error_free;
 mod fixed;
-mod fma;
 mod round;
 mod scaling;
 pub(crate) mod stage;
+pub mod vector;
 
-pub use crate::reflect::reflect_if_certain;
+pub use dispatch::has_fma;
 pub use dot::{difference_dot_sign, dot_sign, dot_with_error};
 pub use double_double::DoubleDouble;
 pub use dyadic::Dyadic;
-pub use error_free::{fast_two_sum, remainder, two_diff, two_prod, two_sum};
+pub use error_free::{U, fast_two_sum, remainder, two_diff, two_prod, two_prod_with, two_sum};
 pub use fixed::{Fixed, MOST_LIMBS, Window};
-pub use fma::has_fma;
-pub use round::round_if_certain;
-pub(crate) use scaling::{mantissa_and_exponent, power_of_two};
+pub use round::{round_if_certain, rounded_ends};
+pub use scaling::{mantissa_and_exponent, power_of_two, power_of_two_near_inverse, scale};

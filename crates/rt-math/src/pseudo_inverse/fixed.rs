@@ -13,7 +13,8 @@ use glam::{DMat3, DVec3};
 
 use super::PseudoInverse;
 use super::regular::Reciprocal;
-use crate::exact::{Fixed, Window, power_of_two};
+use crate::exact::vector::{cross, dot};
+use crate::exact::{Fixed, U, Window, power_of_two};
 use crate::fma_dispatch;
 
 /// The exact rank and the correctly rounded pseudo-inverse of a finite matrix, if it is of this kind.
@@ -51,13 +52,13 @@ impl<const V: usize, const Q: usize> Quotients<V, Q> {
         let window = Window::<N>::around(&m.to_cols_array())?;
         let a = m.to_cols_array_2d().map(|column| column.map(|x| window.fixed(x)));
         let exponent = -window.exponent();
-        let c = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| Fixed::<S>::cross(&a[i], &a[j]));
-        let determinant = Fixed::<V>::dot(&a[0], &c[0]);
+        let c = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| cross::<_, _, Fixed<S>>(&a[i], &a[j]));
+        let determinant: Fixed<V> = dot(&a[0], &c[0]);
         if !determinant.sign().is_eq() {
             let rows = c.map(|row| row.map(|x| x.widen()));
             return Some(Self { rank: 3, rows, denominator: determinant.widen(), exponent });
         }
-        let g = |i: usize, j: usize| Fixed::<S>::dot(&a[i], &a[j]);
+        let g = |i: usize, j: usize| -> Fixed<S> { dot(&a[i], &a[j]) };
         let [g00, g11, g22] = [g(0, 0), g(1, 1), g(2, 2)];
         if c.as_flattened().iter().all(|x| x.sign().is_eq()) {
             let (rows, trace) = (a.map(|row| row.map(|x| x.widen())), g00 + g11 + g22);
@@ -127,7 +128,7 @@ impl<const V: usize, const Q: usize> Quotients<V, Q> {
 }
 
 /// How far the two doubles of [`Fixed::parts`] are from the number, relatively.
-const CUT: f64 = 2.0 * (f64::EPSILON / 2.0) * (f64::EPSILON / 2.0);
+const CUT: f64 = 2.0 * U * U;
 
 fma_dispatch! {
     /// For each numerator two doubles, the roundings of a lower and an upper bound of its quotient by the denominator: where they

@@ -17,6 +17,7 @@ use glam::{DMat3, DVec3};
 
 use super::PseudoInverse;
 use crate::exact::Dyadic;
+use crate::exact::vector::{cross, dot};
 
 /// The exact rank and the correctly rounded pseudo-inverse of a finite matrix.
 #[cold]
@@ -78,12 +79,4 @@ fn quotients<const LIMBS: usize>(m: &DMat3) -> ([Vector<LIMBS>; 3], Dyadic<LIMBS
 /// The correctly rounded quotient; zero by zero is +0.0 too.
 fn divided<const LIMBS: usize>(numerator: &Dyadic<LIMBS>, denominator: &Dyadic<LIMBS>) -> f64 {
     if numerator.sign() == Ordering::Equal { 0.0 } else { Dyadic::quotient(numerator, denominator) }
-}
-
-fn cross<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Vector<LIMBS> {
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
-}
-
-fn dot<const LIMBS: usize>(a: &Vector<LIMBS>, b: &Vector<LIMBS>) -> Dyadic<LIMBS> {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }

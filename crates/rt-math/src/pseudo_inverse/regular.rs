@@ -5,10 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::exact::{two_diff, two_prod, two_sum};
-
-/// Half a unit in the last place of 1, called u in the proofs.
-const U: f64 = f64::EPSILON / 2.0;
+use crate::exact::{U, power_of_two, rounded_ends, two_diff, two_prod, two_sum};
 
 /// Where the series for the reciprocal is bounded, and the determinant is proved not to be zero.
 const TAU_LIMIT: f64 = 1.0 / 8192.0;
@@ -16,7 +13,7 @@ const ETA_LIMIT: f64 = 1.0 / 8.0;
 
 /// Magnitudes of entries, besides zero, for which no product, error term or quotient can over- or underflow.
 const SMALLEST: f64 = 1.0 / LARGEST;
-const LARGEST: f64 = f64::from_bits((1023 + 100) << 52); // 2^100
+const LARGEST: f64 = power_of_two(100);
 
 /// The adjugate of a matrix, column by column as in the inverse: each entry is `h + l` within `u b`, and `|l| <= b`.
 struct Adjugate {
@@ -129,7 +126,7 @@ impl<const FMA: bool> Reciprocal<FMA> {
         let (quotient, error) = two_prod::<FMA>(h, self.r);
         let correction = error + fused::<FMA>(h, self.r_low, l * self.r_sum);
         let bound = fused::<FMA>(self.weights.0, h.abs(), self.weights.1 * b);
-        (quotient + (correction - bound), quotient + (correction + bound))
+        rounded_ends(quotient, correction, bound)
     }
 }
 

@@ -8,8 +8,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{PseudoInverse, power_of_two, pseudo_inverse};
-use crate::exact::two_prod;
+use super::{PseudoInverse, pseudo_inverse};
+use crate::exact::{mantissa_and_exponent, power_of_two, scale, two_prod};
 
 /// The pseudo-inverse of the finite `m` with a tolerance, given the exact one.
 pub(super) fn truncated(m: &DMat3, rtol: f64, exact: PseudoInverse) -> PseudoInverse {
@@ -24,7 +24,7 @@ pub(super) fn truncated(m: &DMat3, rtol: f64, exact: PseudoInverse) -> PseudoInv
     }
 
     let shift = -exponent(m);
-    let a = scaled(m, shift);
+    let a = scale(*m, shift);
     let first = Singular::largest(&a);
     let product = Singular::largest(&cofactors(&a));
     let second = product.value / first.value;
@@ -40,7 +40,7 @@ pub(super) fn truncated(m: &DMat3, rtol: f64, exact: PseudoInverse) -> PseudoInv
     if rank == 2 {
         matrix += outer(product.right.cross(first.right) / second, product.left.cross(first.left));
     }
-    PseudoInverse { matrix: scaled(&matrix, shift), rank }
+    PseudoInverse { matrix: scale(matrix, shift), rank }
 }
 
 /// A singular value with its vectors: `A right = value left`.
@@ -59,7 +59,7 @@ impl Singular {
             return Self { value: 0.0, left: DVec3::X, right: DVec3::X };
         }
         let shift = -exponent(m);
-        let m = scaled(m, shift);
+        let m = scale(*m, shift);
         let mut g = [m.x_axis, m.y_axis, m.z_axis];
         let mut v = [DVec3::X, DVec3::Y, DVec3::Z];
         // Rotations from the right make the columns of `g = m v` orthogonal. Convergence is quadratic: few sweeps do.
@@ -123,13 +123,5 @@ fn outer(u: DVec3, v: DVec3) -> DMat3 {
 
 /// The exponent `e` of the largest magnitude in a finite matrix that is not zero: it is in `2^e..2^(e+1)`.
 fn exponent(m: &DMat3) -> i32 {
-    let largest = m.to_cols_array().into_iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-    let biased = (largest.to_bits() >> 52) as i32;
-    if biased > 0 { biased - 1023 } else { -1011 - largest.to_bits().leading_zeros().cast_signed() }
-}
-
-/// The matrix times `2^shift`, in two steps since the factor may lie beyond the doubles; `shift` within -1024..=1074.
-fn scaled(m: &DMat3, shift: i32) -> DMat3 {
-    let half = shift / 2;
-    *m * power_of_two(half) * power_of_two(shift - half)
+    mantissa_and_exponent(m.to_cols_array().into_iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))).1
 }

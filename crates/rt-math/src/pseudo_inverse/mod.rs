@@ -1,22 +1,21 @@
 //! The Moore-Penrose pseudo-inverse of a 3 x 3 matrix.
 //!
-//! Four stages, each one decides what it can and leaves the rest to the next; all give the same bits.
+//! Three stages, each one decides what it can and leaves the rest to the next; all give the same bits.
 //!
 //! 1. [`regular`]: the inverse in double-double. Nearly every matrix is well scaled and regular, and ends here.
 //! 2. [`fixed`]: entries of like magnitude as exact fixed-point numbers. Here most singular matrices end.
-//! 3. [`graded`]: these two again, after rows and columns were brought to like size.
-//! 4. [`integers`]: exact for every finite matrix.
+//! 3. [`integers`]: exact for every finite matrix.
 //!
 //! [`truncated`] is for the other function, which takes small singular values as zero.
 
 mod fixed;
-mod graded;
 mod integers;
 mod regular;
 mod truncated;
 
 use glam::{DMat3, DVec3};
 
+use crate::exact::power_of_two;
 use crate::fma_dispatch;
 
 /// A pseudo-inverse and the rank it was made for.
@@ -88,9 +87,7 @@ fn undecided(m: &DMat3) -> PseudoInverse {
     if !m.is_finite() {
         return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
     }
-    fixed::pseudo_inverse(m)
-        .or_else(|| graded::inverse(m).map(|matrix| PseudoInverse { matrix, rank: 3 }))
-        .unwrap_or_else(|| integers::pseudo_inverse(m))
+    fixed::pseudo_inverse(m).unwrap_or_else(|| integers::pseudo_inverse(m))
 }
 
 /// Returns the row sums of the pseudo-inverse of `m`: the least-squares solution of smallest length of `m x = (1, 1, 1)`.
@@ -155,7 +152,7 @@ fn undecided_sums(m: &DMat3) -> DVec3 {
 /// ```
 #[must_use]
 pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
-    const SMALLEST: f64 = f64::from_bits((1023 - 900) << 52); // 2^-900
+    const SMALLEST: f64 = power_of_two(-900);
     if !m.is_finite() || rtol.is_nan() {
         return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
     }
@@ -166,13 +163,8 @@ pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
     if rtol < SMALLEST { exact } else { truncated::truncated(&m, rtol, exact) }
 }
 
-/// `2^n` for `n` in -1022..=1023.
-fn power_of_two(n: i32) -> f64 {
-    f64::from_bits(u64::from((1023 + n).cast_unsigned()) << 52)
-}
-
 #[cfg(test)]
-#[path = "../tests/pseudo_inverse/matrices.rs"]
+#[path = "../../tests/pseudo_inverse/matrices.rs"]
 mod matrices;
 
 #[cfg(test)]
@@ -184,10 +176,10 @@ mod tests {
     /// Every stage decides, and what it decides is what the exact integers say, to the bit.
     #[test]
     fn stages_agree_and_each_one_decides() {
-        let mut decided = [0; 4];
+        let mut decided = [0; 3];
         for (name, class) in CLASSES {
             let mut random = Random(7);
-            let mut of_class = [0; 4];
+            let mut of_class = [0; 3];
             for _ in 0..cases(100_000) / 10 {
                 let m = class(&mut random);
                 let entries = m.to_cols_array();
@@ -196,17 +188,16 @@ mod tests {
                 let stages = [
                     regular(regular::inverse::<false>(&entries)),
                     fixed::pseudo_inverse(&m),
-                    regular(graded::inverse(&m)),
                     Some(integers::pseudo_inverse(&m)),
                 ];
-                let expected = bits(&stages[3].expect("integers always decide"));
+                let expected = bits(&stages[2].expect("integers always decide"));
                 for answer in stages.iter().chain([&fused]).flatten() {
                     assert_eq!(bits(answer), expected, "{name}: {entries:?}");
                 }
                 assert_eq!(bits(&pseudo_inverse(m)), expected, "{name}: {entries:?}");
                 of_class[stages.iter().position(Option::is_some).expect("the last")] += 1;
             }
-            println!("{name:24} double-double, fixed, scaled, integers: {of_class:?}");
+            println!("{name:24} double-double, fixed, integers: {of_class:?}");
             decided.iter_mut().zip(of_class).for_each(|(sum, count)| *sum += count);
         }
         assert!(decided.iter().all(|&count| count > 500), "{decided:?}");
