@@ -3,7 +3,6 @@
 mod bvh;
 mod enclosing;
 mod hilbert;
-mod inside;
 mod leaf;
 mod plane;
 mod ray;
@@ -16,13 +15,12 @@ mod triangle;
 
 pub use bvh::Bvh;
 pub use enclosing::{Enclosing, enclosing_sphere};
-pub use inside::{Inside, inside_triangle};
 pub use plane::plane_by_pseudo_inverse;
 pub use ray::Ray;
 pub use shape::{Hit, Shape, Visits};
 pub use sphere::{Side, Sphere};
 pub use sphere_tree::SphereTree;
-pub use triangle::{Triangle, Verdict};
+pub use triangle::{Inside, Triangle, Verdict, inside_triangle};
 
 // The reference of the tests, for those that look inside.
 #[cfg(test)]

@@ -9,9 +9,9 @@ use glam::DVec3;
 use rt_math::exact::vector::{FromDifference, difference, dot, minus};
 use rt_math::exact::{Dyadic, Fixed, U, Window, power_of_two, two_diff, two_prod, two_sum};
 
-use super::basis::Tangent;
 use super::real::Wide;
 use super::stage::{Stage, decided};
+use super::tangent::Tangent;
 use crate::Sphere;
 use crate::simd::{self as lanes, has_fma};
 

@@ -4,8 +4,8 @@ use fearless_simd::Simd;
 use glam::DVec3;
 use rt_math::exact::U;
 
-use super::basis::Tangent;
-use super::lanes::Lanes;
+use super::pivot::Lanes;
+use super::tangent::Tangent;
 use crate::Sphere;
 
 /// Turns the minimal sphere of some of the spheres in `lanes` into that of all of them: adds the sphere that sticks out

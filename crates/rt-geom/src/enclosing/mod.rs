@@ -6,16 +6,16 @@
 //! and the radius grows. When nothing sticks out, that is the answer. (Welzl's recursion, which does this for points,
 //! is wrong for spheres: K. Fischer and B. Gärtner, "The smallest enclosing ball of balls", 2004.)
 
-mod basis;
 mod certify;
 mod extreme;
 mod few;
-mod lanes;
-mod many;
 pub(crate) mod nodes;
+mod pivot;
 mod real;
 mod refine;
+mod scan;
 mod stage;
+mod tangent;
 
 use fearless_simd::{Level, Simd};
 use glam::DVec3;
@@ -23,11 +23,11 @@ use rt_math::exact::U;
 
 use crate::Sphere;
 use crate::simd::dispatch;
-use basis::Tangent;
 use certify::Bracket;
 use extreme::extreme;
-use lanes::{LANES, Lanes};
+use pivot::{LANES, Lanes};
 use stage::{Stage, decided};
+use tangent::Tangent;
 
 /// What [`enclosing_sphere`] gives: the sphere, the spheres that decide it, and how small any other could be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,7 +144,7 @@ fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Op
 #[inline(always)]
 fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
-    let answer = many::support(
+    let answer = scan::support(
         simd,
         spheres,
         origin,

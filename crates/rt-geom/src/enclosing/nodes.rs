@@ -12,9 +12,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rt_math::exact::U;
 
-use super::basis::Tangent;
 use super::few::pivot;
-use super::lanes::{LANES, Lanes, columns, measure};
+use super::pivot::{LANES, Lanes, columns, measure};
+use super::tangent::Tangent;
 use super::{ORDINARY, ORDINARY_SQUARES, enclosing_sphere};
 use crate::Sphere;
 use crate::simd::dispatch;

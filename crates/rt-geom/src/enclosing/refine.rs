@@ -7,9 +7,9 @@ use glam::DVec3;
 use rt_math::exact::U;
 use rt_math::exact::vector::dot;
 
-use super::basis::Tangent;
 use super::certify::{Bracket, enclose_all};
 use super::real::{Real, Wide};
+use super::tangent::Tangent;
 use crate::Sphere;
 
 /// Returns the support, a bracket around the center rounded to doubles, and a lower bound.

@@ -254,7 +254,7 @@ mod tests {
     use fearless_simd::Fallback;
 
     use super::super::Line;
-    use super::super::newton::rounded;
+    use super::super::finish::rounded;
     use super::*;
     use crate::stage::decisions;
 

@@ -351,7 +351,7 @@ fn integer_signs(volumes: &IntegerVolumes) -> [Ordering; 4] {
 #[cfg(test)]
 mod tests {
     use super::super::Line;
-    use super::super::refine::Refined;
+    use super::super::finish::Refined;
     use super::*;
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).

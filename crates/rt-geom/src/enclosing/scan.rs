@@ -5,9 +5,9 @@ use glam::DVec3;
 use rt_math::exact::U;
 
 use super::ORDINARY;
-use super::basis::Tangent;
 use super::few::{TOUCHES, pivot};
-use super::lanes::{LANES, Lanes, columns, marked, measure};
+use super::pivot::{LANES, Lanes, columns, marked, measure};
+use super::tangent::Tangent;
 use crate::Sphere;
 use crate::simd::prefetch_lines;
 

@@ -10,10 +10,10 @@
 //!
 //! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every
 //! case here; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
-//! that cancel as well, from a Newton step on the residual `|w + t d|² - r²` in `newton.rs`.
+//! that cancel as well, from a Newton step on the residual `|w + t d|² - r²` in `finish.rs`.
 
 mod exact;
-mod newton;
+mod finish;
 
 use std::ops::Range;
 
@@ -93,7 +93,7 @@ impl Sphere {
     /// ```
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        newton::closest(self, ray, within.start, within.end)
+        finish::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
@@ -107,7 +107,7 @@ impl Sphere {
     /// The number of roots is exact, a tangent line has one, and each root is correctly rounded: two that differ by
     /// less than the spacing of doubles come out equal. Never `Roots::All`.
     pub fn roots(&self, ray: &Ray) -> Roots {
-        newton::roots(self, ray)
+        finish::roots(self, ray)
     }
 
     /// Returns on which side of the surface a point lies, exactly. A point that is not finite lies outside.

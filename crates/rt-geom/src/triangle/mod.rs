@@ -13,10 +13,11 @@
 //!
 //! Möller and Trumbore's formulas give the same volumes (negative, and two of them as differences from the sum). In plain
 //! doubles with an error bound they decide nearly every case here, and `exact.rs` decides the rest. The last bits of `t`
-//! and of the weights come from one step of iterative refinement, in `refine.rs`.
+//! and of the weights come from one step of iterative refinement, in `finish.rs`.
 
-pub(crate) mod exact;
-mod refine;
+mod exact;
+mod finish;
+mod locate;
 
 use std::ops::Range;
 
@@ -25,6 +26,7 @@ use rt_math::exact::{U, power_of_two};
 
 use crate::Ray;
 use crate::ray::{Candidate, PreparedRay, cross, dot, larger, max_abs, smaller};
+pub use locate::{Inside, inside_triangle};
 
 /// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's origin
 /// is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
@@ -107,7 +109,7 @@ impl Triangle {
     /// ```
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        refine::closest(self, ray, within.start, within.end)
+        finish::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
@@ -198,13 +200,13 @@ impl Triangle {
     /// The weights lie in 0..=1, and their sum is 1 but for the rounding of each. A weight is zero exactly on the
     /// opposite edge, or where it underflows.
     pub fn hit_barycentric(&self, ray: &Ray) -> Option<[f64; 3]> {
-        refine::weights(self, ray)
+        finish::weights(self, ray)
     }
 
     /// Returns `t` and the weights of the three vertices at the hit, if it is in the range: what [`Self::closest`] and
     /// [`Self::hit_barycentric`] give, in less time than both.
     pub fn closest_with_barycentric(&self, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
-        refine::closest_with_weights(self, ray, within.start, within.end)
+        finish::closest_with_weights(self, ray, within.start, within.end)
     }
 
     /// What `any` returns.
