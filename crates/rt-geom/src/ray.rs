@@ -163,6 +163,16 @@ impl Candidate {
     }
 }
 
+/// What a filter in plain doubles says about a line and a shape.
+pub(crate) enum FilterVerdict<C> {
+    /// The line surely misses it.
+    Misses,
+    /// The line surely crosses it, whatever the range: a sphere in two points, a triangle in its interior.
+    Crosses(C),
+    /// A stage of more precision has to decide.
+    Unsure,
+}
+
 /// Whether the range holds `t`: `start <= t < end` by `total_cmp`, where an infinite end is no bound.
 ///
 /// NaN as a bound or an empty range holds nothing.

@@ -28,44 +28,51 @@ const UNDERFLOW_T: f64 = power_of_two(-1000);
 #[cold]
 #[inline(never)]
 pub(super) fn closest(sphere: &Sphere, ray: &Ray, within: Range<f64>) -> Option<f64> {
-    if let Some(equation) = Equation::<1, 2, 4>::new(sphere, ray) {
-        decided(Stage::Fixed);
-        return equation.closest(&within);
-    }
-    let roots = if let Some(roots) = double_double_roots(sphere, ray) {
-        decided(Stage::DoubleDouble);
-        roots
-    } else if let Some(equation) = Equation::<2, 4, 8>::new(sphere, ray) {
-        decided(Stage::Fixed);
-        return equation.closest(&within);
-    } else {
-        integer_roots(sphere, ray)
-    };
-    match roots {
+    let first = |roots| match roots {
         Roots::One(t) if holds(&within, t) => Some(t),
         Roots::Two(near, _) if holds(&within, near) => Some(near),
         Roots::Two(_, far) if holds(&within, far) => Some(far),
         _ => None,
-    }
+    };
+    ask(sphere, ray, |equation| equation.closest(&within), first)
 }
 
 /// Returns the roots; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn roots(sphere: &Sphere, ray: &Ray) -> Roots {
+    ask(sphere, ray, |equation| equation.roots(), |roots| roots)
+}
+
+/// Asks the first stage that decides: of an equation in fixed-point numbers, or of the roots that the others give.
+#[inline(always)]
+fn ask<R>(
+    sphere: &Sphere,
+    ray: &Ray,
+    of_equation: impl FnOnce(&dyn Solve) -> R,
+    of_roots: impl FnOnce(Roots) -> R,
+) -> R {
     if let Some(equation) = Equation::<1, 2, 4>::new(sphere, ray) {
         decided(Stage::Fixed);
-        return equation.roots();
-    }
-    if let Some(roots) = double_double_roots(sphere, ray) {
+        of_equation(&equation)
+    } else if let Some(roots) = double_double_roots(sphere, ray) {
         decided(Stage::DoubleDouble);
-        return roots;
-    }
-    if let Some(equation) = Equation::<2, 4, 8>::new(sphere, ray) {
+        of_roots(roots)
+    } else if let Some(equation) = Equation::<2, 4, 8>::new(sphere, ray) {
         decided(Stage::Fixed);
-        return equation.roots();
+        of_equation(&equation)
+    } else {
+        decided(Stage::Integers);
+        of_roots(integer_roots(sphere, ray))
     }
-    integer_roots(sphere, ray)
+}
+
+/// A quadratic equation of any size.
+trait Solve {
+    fn roots(&self) -> Roots;
+
+    /// The closest root in the range; only roots that may lie in it are computed.
+    fn closest(&self, within: &Range<f64>) -> Option<f64>;
 }
 
 /// Returns on which side of the surface a point lies; slow path, always decides.
@@ -122,7 +129,9 @@ impl<const N: usize, const S: usize, const Q: usize> Equation<N, S, Q> {
     fn far(&self) -> f64 {
         Fixed::root(&-self.b, false, &self.delta, &self.a, &self.c, self.exponent)
     }
+}
 
+impl<const N: usize, const S: usize, const Q: usize> Solve for Equation<N, S, Q> {
     fn roots(&self) -> Roots {
         match self.delta.sign() {
             Ordering::Less => Roots::None,
@@ -131,7 +140,6 @@ impl<const N: usize, const S: usize, const Q: usize> Equation<N, S, Q> {
         }
     }
 
-    /// The closest root in the range; only roots that may lie in it are computed.
     fn closest(&self, within: &Range<f64>) -> Option<f64> {
         let inside = |t: f64| holds(within, t).then_some(t);
         match self.delta.sign() {
@@ -225,7 +233,6 @@ type RootInteger = Dyadic<200>;
 #[cold]
 #[inline(never)]
 fn integer_roots(sphere: &Sphere, ray: &Ray) -> Roots {
-    decided(Stage::Integers);
     let w = difference::<RootInteger>(ray.origin(), sphere.center);
     let d = ray.direction().to_array().map(RootInteger::from_f64);
     let r = RootInteger::from_f64(sphere.radius);
@@ -253,9 +260,10 @@ fn integer_side(sphere: &Sphere, point: DVec3) -> Ordering {
 mod tests {
     use fearless_simd::Fallback;
 
-    use super::super::Line;
+    use super::super::filter::filter;
     use super::super::finish::rounded;
     use super::*;
+    use crate::ray::FilterVerdict;
     use crate::stage::decisions;
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).
@@ -282,12 +290,12 @@ mod tests {
 
     impl Stages {
         fn count(&mut self, sphere: &Sphere, ray: &Ray) {
-            let newton = match sphere.line::<false>(ray) {
-                Line::Misses => {
+            let newton = match filter::<false>(sphere, ray) {
+                FilterVerdict::Misses => {
                     self.filter += 1;
                     return;
                 }
-                Line::Crosses(crossing) => {
+                FilterVerdict::Crosses(crossing) => {
                     let roots = crossing.approximation();
                     match crossing.first(0.0, &roots) {
                         Some(None) => {
@@ -300,7 +308,7 @@ mod tests {
                         None => None,
                     }
                 }
-                Line::Unsure => None,
+                FilterVerdict::Unsure => None,
             };
             // The stages agree, whenever an earlier one decides.
             let integers = integer_roots(sphere, ray);

@@ -11,62 +11,89 @@
 //! last bit. `docs/numerics.md`, section 5, proves the bounds.
 
 use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
-use rt_math::Roots;
 use rt_math::exact::{U, round_if_certain, two_diff, two_sum};
 
-use super::{Approximation, Crossing, Line, Place, Sphere, exact};
+use super::Sphere;
 use crate::Ray;
-use crate::ray::holds;
-use crate::simd::{dispatch, two_prod};
+use crate::simd::two_prod;
 
 /// The error of half the residual, relative to `w.w + r²`.
 const RESIDUAL_ERROR: f64 = 160.0 * U * U;
 
-dispatch! {
-    /// Returns the correctly rounded closest root between the ends of the range.
-    pub(super) fn closest(sphere: &Sphere, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
+/// `a t² + 2 b t + c`, for a line that surely crosses the surface twice.
+pub(super) struct SphereCrossing {
+    pub(super) b: f64,
+    pub(super) c: f64,
+    /// `w.w + r²`
+    pub(super) squares: f64,
+    pub(super) delta: f64,
+    /// A bound for the error of `delta`, less than `delta` itself.
+    pub(super) error: f64,
+    pub(super) inverse_a: f64,
 }
 
-#[inline(always)]
-fn closest_kernel<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, start: f64, end: f64) -> Option<f64> {
-    let within = start..end;
-    let root = match sphere.line::<FMA>(ray) {
-        Line::Misses => return None,
-        Line::Crosses(crossing) => {
-            let roots = crossing.approximation();
-            match crossing.first(start, &roots) {
-                Some(Some(place)) => rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, place),
-                Some(None) => return None,
-                None => None,
-            }
+/// One of the two places where a line crosses a sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// Where it enters.
+    Near,
+    /// Where it leaves.
+    Far,
+}
+
+/// Both roots in doubles.
+pub(super) struct Approximation {
+    pub(super) near: f64,
+    pub(super) far: f64,
+    /// A bound of the error of both, and of the rounding when it is added to them or subtracted.
+    pub(super) error: f64,
+    /// `1 / sqrt(Delta)`, rounded three times
+    inverse_root: f64,
+}
+
+impl SphereCrossing {
+    #[inline(always)]
+    pub(super) fn approximation(&self) -> Approximation {
+        // The division need not wait for the root.
+        let (root, inverse) = (self.delta.sqrt(), 1.0 / self.delta);
+        Approximation {
+            near: (-self.b - root) * self.inverse_a,
+            far: (root - self.b) * self.inverse_a,
+            error: ((1.6 * self.error) * self.inverse_a) * inverse * root,
+            inverse_root: inverse * root,
         }
-        Line::Unsure => None,
-    };
-    match root {
-        Some(t) => holds(&within, t).then_some(t),
-        None => exact::closest(sphere, ray, within),
     }
-}
 
-dispatch! {
-    /// Returns the correctly rounded roots.
-    pub(super) fn roots(sphere: &Sphere, ray: &Ray) -> Roots = roots_kernel;
-}
+    /// Which root, if any, is the first from +0.0 on; `None` if the range starts elsewhere or it is not certain.
+    ///
+    /// The signs of the coefficients tell: of the roots' product c / a and, if it is positive, of their sum -2 b / a.
+    /// `docs/numerics.md` shows that the sign of b is then certain.
+    #[inline(always)]
+    pub(super) fn first_ahead(&self, start: f64) -> Option<Option<Place>> {
+        let certain = start.to_bits() == 0 && self.c.abs() > 14.0 * U * self.squares;
+        let first = match (self.c < 0.0, self.b < 0.0) {
+            (true, _) => Some(Place::Far),
+            (false, true) => Some(Place::Near),
+            (false, false) => None,
+        };
+        certain.then_some(first)
+    }
 
-#[inline(always)]
-fn roots_kernel<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray) -> Roots {
-    match sphere.line::<FMA>(ray) {
-        Line::Misses => Roots::None,
-        Line::Crosses(crossing) => {
-            let roots = crossing.approximation();
-            let near = rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, Place::Near);
-            let far = rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, Place::Far);
-            match (near, far) {
-                (Some(near), Some(far)) => Roots::Two(near, far),
-                _ => exact::roots(sphere, ray),
-            }
+    /// Which root, if any, is the first not before the start of a range; `None` if that is not certain.
+    #[inline(always)]
+    pub(super) fn first(&self, start: f64, roots: &Approximation) -> Option<Option<Place>> {
+        let Approximation { near, far, error, .. } = *roots;
+        if let Some(first) = self.first_ahead(start) {
+            Some(first)
+        } else if near - error > start {
+            Some(Some(Place::Near))
+        } else if near + error < start && far - error > start {
+            Some(Some(Place::Far))
+        } else if far + error < start {
+            Some(None)
+        } else {
+            None
         }
-        Line::Unsure => exact::roots(sphere, ray),
     }
 }
 
@@ -76,7 +103,7 @@ pub(super) fn rounded<const FMA: bool, S: Simd>(
     simd: S,
     sphere: &Sphere,
     ray: &Ray,
-    crossing: &Crossing,
+    crossing: &SphereCrossing,
     roots: &Approximation,
     place: Place,
 ) -> Option<f64> {
@@ -91,7 +118,7 @@ fn refined<const FMA: bool, S: Simd>(
     simd: S,
     sphere: &Sphere,
     ray: &Ray,
-    crossing: &Crossing,
+    crossing: &SphereCrossing,
     roots: &Approximation,
     place: Place,
 ) -> Option<(f64, f64, f64)> {
@@ -143,10 +170,13 @@ mod tests {
     use crate::reference::sphere::Equation;
     use crate::reference::{Exact, exact};
     use glam::DVec3;
+    use rt_math::Roots;
     use std::cmp::Ordering;
 
+    use super::super::exact;
+    use super::super::filter::{closest, closest_kernel, filter, roots, roots_kernel};
     use super::*;
-    use crate::ray::PreparedRay;
+    use crate::ray::{FilterVerdict, PreparedRay};
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).
     fn random(state: &mut u64) -> f64 {
@@ -211,7 +241,7 @@ mod tests {
             let along = radius * 2f64.powi(i % 11) * random(state);
             let sphere = Sphere::new(center, radius).unwrap();
             let ray = Ray::new(center + off * side + along * direction, direction).unwrap();
-            let Line::Crosses(crossing) = sphere.line::<false>(&ray) else { continue };
+            let FilterVerdict::Crosses(crossing) = filter::<false>(&sphere, &ray) else { continue };
             let (roots, truth) = (crossing.approximation(), Equation::new(&ray, &sphere));
             for place in [Place::Near, Place::Far] {
                 let simd = Fallback::new();

@@ -9,10 +9,11 @@
 //! ```
 //!
 //! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every
-//! case here; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
+//! case in `filter.rs`; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
 //! that cancel as well, from a Newton step on the residual `|w + t d|² - r²` in `finish.rs`.
 
 mod exact;
+mod filter;
 mod finish;
 
 use std::ops::Range;
@@ -22,15 +23,7 @@ use rt_math::Roots;
 use rt_math::exact::{U, power_of_two, power_of_two_near_inverse};
 
 use crate::Ray;
-use crate::ray::{Candidate, PreparedRay, cross, dot, max_abs};
-
-/// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there, and what
-/// underflows is far below the bounds.
-const SMALLEST: f64 = power_of_two(-250);
-const LARGEST: f64 = power_of_two(600);
-
-/// The error of `Delta` in the filter, relative to `d.d (w.w + r²)`, as `docs/numerics.md`, section 5, has it.
-const ERROR: f64 = 17.0 * U;
+use crate::ray::{PreparedRay, max_abs};
 
 /// Swallows what underflow does to a comparison of squares: `2^-1000`.
 const UNDERFLOW: f64 = power_of_two(-1000);
@@ -93,7 +86,7 @@ impl Sphere {
     /// ```
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        finish::closest(self, ray, within.start, within.end)
+        filter::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
@@ -107,7 +100,7 @@ impl Sphere {
     /// The number of roots is exact, a tangent line has one, and each root is correctly rounded: two that differ by
     /// less than the spacing of doubles come out equal. Never `Roots::All`.
     pub fn roots(&self, ray: &Ray) -> Roots {
-        finish::roots(self, ray)
+        filter::roots(self, ray)
     }
 
     /// Returns on which side of the surface a point lies, exactly. A point that is not finite lies outside.
@@ -149,164 +142,5 @@ impl Sphere {
         // Scaled by a power of two, so that no square over- or underflows.
         let scaled = w * power_of_two_near_inverse(largest);
         scaled / scaled.length()
-    }
-
-    /// What `any` returns.
-    #[inline(always)]
-    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
-        match self.line::<FMA>(prepared.ray) {
-            Line::Misses => false,
-            // For the whole ray the signs are enough, and need no root.
-            Line::Crosses(crossing) => match crossing.first_ahead(prepared.start) {
-                Some(None) => false,
-                Some(Some(_)) if prepared.end == f64::INFINITY => true,
-                _ => self.offer(&crossing, prepared, f64::INFINITY).is_some(),
-            },
-            Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some(),
-        }
-    }
-
-    /// Returns bounds of the closest hit's `t`, or `None` if nothing in the range is hit or the hit surely lies
-    /// beyond `limit`.
-    #[inline(always)]
-    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line::<FMA>(prepared.ray) {
-            Line::Misses => None,
-            Line::Crosses(crossing) => self.offer(&crossing, prepared, limit),
-            Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
-        }
-    }
-
-    /// Returns the candidate of a line that crosses the surface.
-    #[inline(always)]
-    fn offer(&self, crossing: &Crossing, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let roots = crossing.approximation();
-        let (low, high) = (roots.near - roots.error, roots.near + roots.error);
-        if low > prepared.start && high < prepared.end {
-            (low <= limit).then_some(Candidate { low, high })
-        } else {
-            self.offer_far(roots.near, roots.far, roots.error, prepared, limit)
-        }
-    }
-
-    /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of the root.
-    #[inline(never)]
-    fn offer_far(&self, near: f64, far: f64, error: f64, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let t = if near + error < prepared.start { far } else { near };
-        prepared.admit((t - error, t + error), limit, || self.exact_candidate(prepared.ray, prepared.within(), limit))
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
-        Candidate::exact(exact::closest(self, ray, within), limit)
-    }
-
-    /// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.
-    #[inline(always)]
-    fn line<const FMA: bool>(&self, ray: &Ray) -> Line {
-        let d = ray.direction();
-        let w = ray.origin() - self.center;
-        let x = cross::<FMA>(w, d);
-        let (w_square, radius_square) = (dot::<FMA>(w, w), self.radius * self.radius);
-        let delta = ray.square() * radius_square - dot::<FMA>(x, x);
-        let squares = w_square + radius_square;
-        // NaN if the direction is out of the range where this is proved.
-        let error = (ERROR * ray.square()) * squares;
-        if !(squares > SMALLEST && squares < LARGEST) {
-            return Line::Unsure;
-        }
-        if delta < -error {
-            return Line::Misses;
-        }
-        if delta > error {
-            let (b, c) = (dot::<FMA>(w, d), w_square - radius_square);
-            return Line::Crosses(Crossing { b, c, squares, delta, error, inverse_a: ray.inverse_square() });
-        }
-        Line::Unsure
-    }
-}
-
-/// What the filter says about a line and a sphere.
-enum Line {
-    Misses,
-    Crosses(Crossing),
-    Unsure,
-}
-
-/// `a t² + 2 b t + c`, for a line that surely crosses the surface twice.
-struct Crossing {
-    b: f64,
-    c: f64,
-    /// `w.w + r²`
-    squares: f64,
-    delta: f64,
-    /// A bound for the error of `delta`, less than `delta` itself.
-    error: f64,
-    inverse_a: f64,
-}
-
-/// One of the two places where a line crosses a sphere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
-    /// Where it enters.
-    Near,
-    /// Where it leaves.
-    Far,
-}
-
-/// Both roots in doubles.
-struct Approximation {
-    near: f64,
-    far: f64,
-    /// A bound of the error of both, and of the rounding when it is added to them or subtracted.
-    error: f64,
-    /// `1 / sqrt(Delta)`, rounded three times
-    inverse_root: f64,
-}
-
-impl Crossing {
-    #[inline(always)]
-    fn approximation(&self) -> Approximation {
-        // The division need not wait for the root.
-        let (root, inverse) = (self.delta.sqrt(), 1.0 / self.delta);
-        Approximation {
-            near: (-self.b - root) * self.inverse_a,
-            far: (root - self.b) * self.inverse_a,
-            error: ((1.6 * self.error) * self.inverse_a) * inverse * root,
-            inverse_root: inverse * root,
-        }
-    }
-
-    /// Which root, if any, is the first from +0.0 on; `None` if the range starts elsewhere or it is not certain.
-    ///
-    /// The signs of the coefficients tell: of the roots' product c / a and, if it is positive, of their sum -2 b / a.
-    /// `docs/numerics.md` shows that the sign of b is then certain.
-    #[inline(always)]
-    fn first_ahead(&self, start: f64) -> Option<Option<Place>> {
-        let certain = start.to_bits() == 0 && self.c.abs() > 14.0 * U * self.squares;
-        let first = match (self.c < 0.0, self.b < 0.0) {
-            (true, _) => Some(Place::Far),
-            (false, true) => Some(Place::Near),
-            (false, false) => None,
-        };
-        certain.then_some(first)
-    }
-
-    /// Which root, if any, is the first not before the start of a range; `None` if that is not certain.
-    #[inline(always)]
-    fn first(&self, start: f64, roots: &Approximation) -> Option<Option<Place>> {
-        let Approximation { near, far, error, .. } = *roots;
-        if let Some(first) = self.first_ahead(start) {
-            Some(first)
-        } else if near - error > start {
-            Some(Some(Place::Near))
-        } else if near + error < start && far - error > start {
-            Some(Some(Place::Far))
-        } else if far + error < start {
-            Some(None)
-        } else {
-            None
-        }
     }
 }

@@ -350,9 +350,10 @@ fn integer_signs(volumes: &IntegerVolumes) -> [Ordering; 4] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Line;
+    use super::super::filter::{again, filter};
     use super::super::finish::Refined;
     use super::*;
+    use crate::ray::FilterVerdict;
 
     /// Numbers in -1..1 from a fixed seed (splitmix64).
     fn random(state: &mut u64) -> f64 {
@@ -390,18 +391,18 @@ mod tests {
         fn count(&mut self, triangle: &Triangle, ray: &Ray) {
             let exact = IntegerVolumes::new(triangle, ray);
             let expected = verdict(integer_signs(&exact)).unwrap_or(Verdict::Parallel);
-            match triangle.line::<false>(ray) {
-                Line::Misses => {
+            match filter::<false>(triangle, ray) {
+                FilterVerdict::Misses => {
                     self.filter += 1;
                     assert!(!expected.is_hit(), "{triangle:?} {ray:?}");
                 }
-                Line::Hits(crossing) => {
+                FilterVerdict::Crosses(crossing) => {
                     self.filter += 1;
                     assert_eq!(expected, Verdict::Interior, "{triangle:?} {ray:?}");
                     let refined = Refined::new::<false>(&crossing, triangle, ray, crossing.solution());
                     let rounded = match (refined.t::<false>(), refined.weights::<false>()) {
                         (Some(t), Some(weights)) => (Some(t), Some(weights)),
-                        _ => refined.again::<false>(),
+                        _ => again(triangle, ray, refined.corrected::<false>()),
                     };
                     if let (Some(t), Some(weights)) = rounded {
                         self.rounded += 1;
@@ -411,7 +412,7 @@ mod tests {
                         self.not_rounded += 1;
                     }
                 }
-                Line::Unsure => {
+                FilterVerdict::Unsure => {
                     let signs = if let Some(fixed) = FixedVolumes::<1, 2, 3>::new(triangle, ray) {
                         self.fixed += 1;
                         fixed.signs()

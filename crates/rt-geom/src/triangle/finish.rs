@@ -13,100 +13,79 @@
 
 use glam::DVec3;
 use rt_math::exact::{U, round_if_certain, two_prod, two_sum};
-use rt_math::fma_dispatch;
 
-use super::{Crossing, Line, Triangle, exact};
+use super::Triangle;
 use crate::Ray;
-use crate::ray::{cross, dot, holds, max_abs};
+use crate::ray::{cross, dot, max_abs};
 
 /// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to `r`.
 const REST_ERROR: f64 = 136.0 * U * U;
 const SOLUTION_ERROR: f64 = 21.0 * U;
 
-fma_dispatch! {
-    /// Returns the correctly rounded `t` of the hit, if it is between the ends of the range.
-    pub(super) fn closest(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
+/// Möller and Trumbore's quantities for a line that surely meets the interior, all but `e`, `f`, `p` with the sign that makes the
+/// sum of the volumes positive.
+pub(super) struct TriangleCrossing {
+    /// The edges from the first vertex to the others.
+    pub(super) e: DVec3,
+    pub(super) f: DVec3,
+    /// `d x f`
+    pub(super) p: DVec3,
+    /// What the others have been multiplied with: 1 or -1.
+    pub(super) sign: f64,
+    /// The sum of the three volumes, and two of them: the weights of the vertices times the sum.
+    pub(super) sum: f64,
+    pub(super) v: f64,
+    pub(super) w: f64,
+    /// `t` times the sum.
+    pub(super) height: f64,
+    /// `E`: the sum over the axes of the largest component of the edges.
+    pub(super) edge: f64,
+    /// `E + S`, with `S` the same for the origin relative to the first vertex.
+    pub(super) size: f64,
+    /// What the errors of volumes and height are proportional to.
+    pub(super) spread: f64,
 }
 
-#[inline(always)]
-fn closest_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> {
-    let within = start..end;
-    let t = match triangle.line::<FMA>(ray) {
-        Line::Misses => return None,
-        Line::Hits(crossing) if crossing.is_before(start) => return None,
-        Line::Hits(crossing) => {
-            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
-            refined.t::<FMA>().or_else(|| refined.again::<FMA>().0)
-        }
-        Line::Unsure => None,
-    };
-    match t {
-        Some(t) => holds(&within, t).then_some(t),
-        None => exact::closest(triangle, ray, within),
+impl TriangleCrossing {
+    /// The height, which has the sign of `t`, and a bound of its error.
+    #[inline(always)]
+    pub(super) fn height(&self) -> (f64, f64) {
+        (self.height, self.spread * self.edge)
     }
-}
 
-fma_dispatch! {
-    /// Returns the correctly rounded weights where the whole line meets the triangle.
-    pub(super) fn weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> = weights_kernel;
-}
+    /// Bounds of the exact and of the correctly rounded `t`.
+    #[inline(always)]
+    pub(super) fn bounds(&self, ray: &Ray) -> (f64, f64) {
+        let inverse = 1.0 / self.sum;
+        let t = self.height * inverse;
+        let error = self.spread * (self.edge + t.abs() * ray.reach()) * inverse;
+        (t - error, t + error)
+    }
 
-#[inline(always)]
-fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
-    let weights = match triangle.line::<FMA>(ray) {
-        Line::Misses => return None,
-        Line::Hits(crossing) => {
-            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
-            refined.weights::<FMA>().or_else(|| refined.again::<FMA>().1)
-        }
-        Line::Unsure => None,
-    };
-    weights.or_else(|| exact::exact_weights(triangle, ray))
-}
+    /// `t`, `β` and `γ` in doubles.
+    #[inline(always)]
+    pub(super) fn solution(&self) -> [f64; 3] {
+        let inverse = 1.0 / self.sum;
+        [self.height * inverse, self.v * inverse, self.w * inverse]
+    }
 
-fma_dispatch! {
-    /// Returns both, if `t` is between the ends of the range.
-    pub(super) fn closest_with_weights(
-        triangle: &Triangle,
-        ray: &Ray,
-        start: f64,
-        end: f64,
-    ) -> Option<(f64, [f64; 3])> = both_kernel;
-}
-
-#[inline(always)]
-fn both_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<(f64, [f64; 3])> {
-    let within = start..end;
-    let (t, weights) = match triangle.line::<FMA>(ray) {
-        Line::Misses => return None,
-        Line::Hits(crossing) if crossing.is_before(start) => return None,
-        Line::Hits(crossing) => {
-            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
-            match (refined.t::<FMA>(), refined.weights::<FMA>()) {
-                (Some(t), Some(weights)) => (Some(t), Some(weights)),
-                _ => refined.again::<FMA>(),
-            }
-        }
-        Line::Unsure => (None, None),
-    };
-    match (t, weights) {
-        (Some(t), _) if !holds(&within, t) => None,
-        (Some(t), Some(weights)) => Some((t, weights)),
-        (Some(t), None) => Some((t, exact::exact_weights(triangle, ray)?)),
-        (None, _) => exact::closest_with_weights(triangle, ray, within),
+    /// Whether the hit surely comes before a range that starts at the origin or later.
+    #[inline(always)]
+    pub(super) fn is_before(&self, start: f64) -> bool {
+        let (height, error) = self.height();
+        height < -error && start >= 0.0
     }
 }
 
 /// The solution in doubles and what is left over.
 pub(super) struct Refined<'a> {
-    crossing: &'a Crossing,
-    triangle: &'a Triangle,
+    crossing: &'a TriangleCrossing,
     ray: &'a Ray,
     /// One over the sum of the volumes, with the sum's own sign.
     inverse: f64,
     t: f64,
     /// `α`, `β`, `γ`, and `1 - α - β - γ`.
-    weights: [f64; 3],
+    pub(super) weights: [f64; 3],
     missing: f64,
     /// `r` and `r x e`
     rest: DVec3,
@@ -118,12 +97,12 @@ pub(super) struct Refined<'a> {
 impl<'a> Refined<'a> {
     #[inline(always)]
     pub(super) fn new<const FMA: bool>(
-        crossing: &'a Crossing,
-        triangle: &'a Triangle,
+        crossing: &'a TriangleCrossing,
+        triangle: &Triangle,
         ray: &'a Ray,
         [t, beta, gamma]: [f64; 3],
     ) -> Self {
-        let Crossing { e, sign, sum, edge, size, .. } = *crossing;
+        let TriangleCrossing { e, sign, sum, edge, size, .. } = *crossing;
         let [a, b, c] = triangle.vertices;
         let (rest, beta_error) = two_sum(1.0, -beta);
         let (alpha, gamma_error) = two_sum(rest, -gamma);
@@ -155,7 +134,6 @@ impl<'a> Refined<'a> {
         let inverse = positive * sign;
         Self {
             crossing,
-            triangle,
             ray,
             inverse,
             t,
@@ -167,10 +145,17 @@ impl<'a> Refined<'a> {
         }
     }
 
+    /// `t`, `β` and `γ` with their corrections, in doubles.
+    #[inline(always)]
+    pub(super) fn corrected<const FMA: bool>(&self) -> [f64; 3] {
+        let [t, beta, gamma] = self.steps::<FMA>();
+        [self.t + t, self.weights[1] + beta, self.weights[2] + gamma]
+    }
+
     /// The corrections of `t`, `β` and `γ`.
     #[inline(always)]
     fn steps<const FMA: bool>(&self) -> [f64; 3] {
-        let Crossing { f, p, .. } = *self.crossing;
+        let TriangleCrossing { f, p, .. } = *self.crossing;
         let d = self.ray.direction();
         [dot::<FMA>(f, self.q), dot::<FMA>(self.rest, p), dot::<FMA>(d, self.q)].map(|x| x * self.inverse)
     }
@@ -208,52 +193,16 @@ impl<'a> Refined<'a> {
             round_if_certain(self.weights[2], gamma.0, gamma.1)?,
         ])
     }
-
-    /// `t` and the weights, what is certain of them, after one more step.
-    #[inline(always)]
-    pub(super) fn again<const FMA: bool>(&self) -> (Option<f64>, Option<[f64; 3]>) {
-        let [t, beta, gamma] = self.steps::<FMA>();
-        let corrected = [self.t + t, self.weights[1] + beta, self.weights[2] + gamma];
-        refined_again(self.triangle, self.ray, corrected)
-    }
-}
-
-/// One more step, from a corrected solution: for a ray that is nearly parallel to the plane.
-#[cold]
-#[inline(never)]
-fn refined_again(triangle: &Triangle, ray: &Ray, corrected: [f64; 3]) -> (Option<f64>, Option<[f64; 3]>) {
-    let Line::Hits(crossing) = triangle.line::<false>(ray) else { return (None, None) };
-    let refined = Refined::new::<false>(&crossing, triangle, ray, corrected);
-    // False for NaN.
-    if refined.weights.iter().all(|&weight| weight >= -0.25) {
-        (refined.t::<false>(), refined.weights::<false>())
-    } else {
-        (None, None)
-    }
-}
-
-impl Crossing {
-    /// `t`, `β` and `γ` in doubles.
-    #[inline(always)]
-    pub(super) fn solution(&self) -> [f64; 3] {
-        let inverse = 1.0 / self.sum;
-        [self.height * inverse, self.v * inverse, self.w * inverse]
-    }
-
-    /// Whether the hit surely comes before a range that starts at the origin or later.
-    #[inline(always)]
-    fn is_before(&self, start: f64) -> bool {
-        let (height, error) = self.height();
-        height < -error && start >= 0.0
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::cmp::Ordering;
 
+    use super::super::exact;
+    use super::super::filter::{again, both_kernel, closest_kernel, filter, weights_kernel};
     use super::*;
-    use crate::ray::PreparedRay;
+    use crate::ray::{FilterVerdict, PreparedRay};
     use crate::reference::triangle::Truth;
     use crate::reference::{self, Exact, exact, minus};
 
@@ -324,12 +273,12 @@ mod tests {
             let target = a + 0.4 * random(state).abs() * (b - a) + 0.4 * random(state).abs() * (c - a);
             let lean = 2f64.powi(-12 - i % 12) * vector(state);
             let ray = Ray::new(target - along - lean, along + lean).unwrap();
-            let Line::Hits(crossing) = triangle.line::<false>(&ray) else { continue };
+            let FilterVerdict::Crosses(crossing) = filter::<false>(&triangle, &ray) else { continue };
             hits += 1;
             let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
             if refined.t::<false>().is_some() {
                 first += 1;
-            } else if let (Some(t), Some(weights)) = refined.again::<false>() {
+            } else if let (Some(t), Some(weights)) = again(&triangle, &ray, refined.corrected::<false>()) {
                 second += 1;
                 assert_eq!(t, exact::integer_t(&triangle, &ray), "{triangle:?} {ray:?}");
                 assert_eq!(Some(weights), exact::integer_weights(&triangle, &ray), "{triangle:?} {ray:?}");
@@ -351,7 +300,7 @@ mod tests {
             let (target, along) = (a + inside(), inside());
             let lean = 2f64.powi(-i32::try_from(i % 24).unwrap()) * vector(state);
             let ray = Ray::new(target - along - lean, along + lean).unwrap();
-            let Line::Hits(crossing) = triangle.line::<false>(&ray) else { continue };
+            let FilterVerdict::Crosses(crossing) = filter::<false>(&triangle, &ray) else { continue };
             let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
             hits += 1;
             let context = || format!("{triangle:?} {ray:?}");
@@ -369,7 +318,7 @@ mod tests {
 
             // Solving for the rest as computed: t' = -r . (e x f) / sum, β' = r . (d x f) / -sum, γ' = r . (e x d) / -sum.
             let truth = Truth::new(&ray, &triangle);
-            let Crossing { edge, sum, .. } = crossing;
+            let TriangleCrossing { edge, sum, .. } = crossing;
             let (rest, n) = (reference::vector(refined.rest), reference::cross(&e, &f));
             let length = refined.rest.x.abs() + refined.rest.y.abs() + refined.rest.z.abs();
             let error = SOLUTION_ERROR * (ray.reach() * edge * edge / sum) * length;

@@ -12,10 +12,11 @@
 //! closed mesh has no gap.
 //!
 //! Möller and Trumbore's formulas give the same volumes (negative, and two of them as differences from the sum). In plain
-//! doubles with an error bound they decide nearly every case here, and `exact.rs` decides the rest. The last bits of `t`
+//! doubles with an error bound they decide nearly every case in `filter.rs`, and `exact.rs` decides the rest. The last bits of `t`
 //! and of the weights come from one step of iterative refinement, in `finish.rs`.
 
 mod exact;
+mod filter;
 mod finish;
 mod locate;
 
@@ -25,17 +26,14 @@ use glam::DVec3;
 use rt_math::exact::{U, power_of_two};
 
 use crate::Ray;
-use crate::ray::{Candidate, PreparedRay, cross, dot, larger, max_abs, smaller};
+use crate::ray::{FilterVerdict, PreparedRay, larger, max_abs};
+use filter::{filter, surely_leans};
 pub use locate::{Inside, inside_triangle};
 
 /// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's origin
 /// is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
 const SHORTEST: f64 = power_of_two(-150);
 const FARTHEST: f64 = power_of_two(300);
-
-/// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to `E² (E + S)`,
-/// as `docs/numerics.md`, section 6, has them.
-const ERROR: f64 = 18.0 * U;
 
 /// How a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,7 +107,7 @@ impl Triangle {
     /// ```
     #[inline]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
-        finish::closest(self, ray, within.start, within.end)
+        filter::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
@@ -134,10 +132,10 @@ impl Triangle {
     /// assert_eq!(down(0.5, 0.5f64.next_up()), Verdict::Miss);
     /// ```
     pub fn verdict(&self, ray: &Ray) -> Verdict {
-        let line = match self.line::<false>(ray) {
-            Line::Hits(_) => Verdict::Interior,
-            Line::Misses if self.surely_leans(ray) => Verdict::Miss,
-            Line::Misses | Line::Unsure => exact::line_verdict(self, ray),
+        let line = match filter::<false>(self, ray) {
+            FilterVerdict::Crosses(_) => Verdict::Interior,
+            FilterVerdict::Misses if surely_leans(self, ray) => Verdict::Miss,
+            FilterVerdict::Misses | FilterVerdict::Unsure => exact::line_verdict(self, ray),
         };
         if line.is_hit() && !self.any(ray, 0.0..f64::INFINITY) { Verdict::Miss } else { line }
     }
@@ -166,14 +164,14 @@ impl Triangle {
     /// assert_eq!(halves.iter().filter(|half| half.crosses(&ray)).count(), 1);
     /// ```
     pub fn crosses(&self, ray: &Ray) -> bool {
-        match self.line::<false>(ray) {
-            Line::Misses => false,
-            Line::Hits(crossing) => match crossing.height() {
+        match filter::<false>(self, ray) {
+            FilterVerdict::Misses => false,
+            FilterVerdict::Crosses(crossing) => match crossing.height() {
                 (height, error) if height > error => true,
                 (height, error) if height < -error => false,
                 _ => exact::crosses(self, ray),
             },
-            Line::Unsure => exact::crosses(self, ray),
+            FilterVerdict::Unsure => exact::crosses(self, ray),
         }
     }
 
@@ -200,157 +198,12 @@ impl Triangle {
     /// The weights lie in 0..=1, and their sum is 1 but for the rounding of each. A weight is zero exactly on the
     /// opposite edge, or where it underflows.
     pub fn hit_barycentric(&self, ray: &Ray) -> Option<[f64; 3]> {
-        finish::weights(self, ray)
+        filter::weights(self, ray)
     }
 
     /// Returns `t` and the weights of the three vertices at the hit, if it is in the range: what [`Self::closest`] and
     /// [`Self::hit_barycentric`] give, in less time than both.
     pub fn closest_with_barycentric(&self, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
-        finish::closest_with_weights(self, ray, within.start, within.end)
-    }
-
-    /// What `any` returns.
-    #[inline(always)]
-    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
-        if prepared.start.to_bits() != 0 || prepared.end != f64::INFINITY {
-            return self.candidate::<FMA>(prepared, f64::INFINITY).is_some();
-        }
-        // For the whole ray the sign of `t` is enough, and needs no division.
-        match self.line::<FMA>(prepared.ray) {
-            Line::Misses => return false,
-            Line::Hits(crossing) => {
-                let (height, error) = crossing.height();
-                if height.abs() > error {
-                    return height > 0.0;
-                }
-            }
-            Line::Unsure => {}
-        }
-        self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some()
-    }
-
-    /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
-    /// `limit`.
-    #[inline(always)]
-    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        match self.line::<FMA>(prepared.ray) {
-            Line::Misses => None,
-            Line::Hits(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
-                self.exact_candidate(prepared.ray, prepared.within(), limit)
-            }),
-            Line::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
-        Candidate::exact(exact::closest(self, ray, within), limit)
-    }
-
-    /// The filter: tells in plain doubles whether the line meets the interior or passes beside the triangle, where that
-    /// is certain.
-    ///
-    /// Source: T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997; the bounds are ours.
-    #[inline(always)]
-    fn line<const FMA: bool>(&self, ray: &Ray) -> Line {
-        let [a, b, c] = self.vertices;
-        let (e, f, s) = (b - a, c - a, ray.origin() - a);
-        let edge = self.edge;
-        let size = edge + (s.x.abs() + s.y.abs() + s.z.abs());
-        let spread = (ERROR * edge) * size;
-        // NaN if the direction is out of the range where this is proved.
-        let error = spread * ray.reach();
-        if size >= FARTHEST {
-            return Line::Unsure;
-        }
-        let p = cross::<FMA>(ray.direction(), f);
-        let sum = dot::<FMA>(e, p);
-        // From here on as if the sum were positive.
-        let sign = 1f64.copysign(sum);
-        let (sum, v) = (sum.abs(), sign * dot::<FMA>(s, p));
-        let q = cross::<FMA>(s, e);
-        let w = sign * dot::<FMA>(ray.direction(), q);
-        let u = (sum - v) - w;
-        // All three at once: one branch to foretell.
-        let least = smaller(v, smaller(u, w));
-        // False for NaN.
-        if smaller(sum, least.abs()) > error {
-            if least < 0.0 {
-                return Line::Misses;
-            }
-            let height = sign * dot::<FMA>(f, q);
-            return Line::Hits(Crossing { e, f, p, sign, sum, v, w, height, edge, size, spread });
-        }
-        if self.passes_beside(ray, error) { Line::Misses } else { Line::Unsure }
-    }
-
-    /// Whether a line of which the filter is not sure passes surely beside the triangle: two volumes have opposite signs,
-    /// be it parallel to the plane or not.
-    #[cold]
-    #[inline(never)]
-    fn passes_beside(&self, ray: &Ray, error: f64) -> bool {
-        let [a, b, c] = self.vertices;
-        let (e, f, s) = (b - a, c - a, ray.origin() - a);
-        let p = ray.direction().cross(f);
-        let (sum, v, w) = (e.dot(p), s.dot(p), ray.direction().dot(s.cross(e)));
-        let u = (sum - v) - w;
-        smaller(u, smaller(v, w)) < -error && larger(u, larger(v, w)) > error
-    }
-
-    /// Whether the ray is surely not parallel to the triangle, which surely has a plane.
-    fn surely_leans(&self, ray: &Ray) -> bool {
-        let [a, b, c] = self.vertices;
-        let error = (ERROR * self.edge) * self.edge * ray.reach();
-        self.edge < FARTHEST && ray.direction().cross(c - a).dot(b - a).abs() > error
-    }
-}
-
-/// What the filter says about a line and a triangle.
-enum Line {
-    Misses,
-    /// Through the interior, whatever the range.
-    Hits(Crossing),
-    Unsure,
-}
-
-/// Möller and Trumbore's quantities for a line that surely meets the interior, all but `e`, `f`, `p` with the sign that makes the
-/// sum of the volumes positive.
-struct Crossing {
-    /// The edges from the first vertex to the others.
-    e: DVec3,
-    f: DVec3,
-    /// `d x f`
-    p: DVec3,
-    /// What the others have been multiplied with: 1 or -1.
-    sign: f64,
-    /// The sum of the three volumes, and two of them: the weights of the vertices times the sum.
-    sum: f64,
-    v: f64,
-    w: f64,
-    /// `t` times the sum.
-    height: f64,
-    /// `E`: the sum over the axes of the largest component of the edges.
-    edge: f64,
-    /// `E + S`, with `S` the same for the origin relative to the first vertex.
-    size: f64,
-    /// What the errors of volumes and height are proportional to.
-    spread: f64,
-}
-
-impl Crossing {
-    /// The height, which has the sign of `t`, and a bound of its error.
-    #[inline(always)]
-    fn height(&self) -> (f64, f64) {
-        (self.height, self.spread * self.edge)
-    }
-
-    /// Bounds of the exact and of the correctly rounded `t`.
-    #[inline(always)]
-    fn bounds(&self, ray: &Ray) -> (f64, f64) {
-        let inverse = 1.0 / self.sum;
-        let t = self.height * inverse;
-        let error = self.spread * (self.edge + t.abs() * ray.reach()) * inverse;
-        (t - error, t + error)
+        filter::closest_with_weights(self, ray, within.start, within.end)
     }
 }

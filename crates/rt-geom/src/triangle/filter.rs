@@ -1,0 +1,206 @@
+//! The filter of lines and triangles, and what follows it: last bits where it is certain, exact arithmetic where it is not.
+
+use std::ops::Range;
+
+use rt_math::exact::U;
+use rt_math::fma_dispatch;
+
+use super::finish::{Refined, TriangleCrossing};
+use super::{FARTHEST, Triangle, exact};
+use crate::Ray;
+use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds, larger, smaller};
+
+/// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to `E² (E + S)`,
+/// as `docs/numerics.md`, section 6, has them.
+const ERROR: f64 = 18.0 * U;
+
+/// The filter: tells in plain doubles whether the line meets the interior or passes beside the triangle, where that
+/// is certain.
+///
+/// Source: T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997; the bounds are ours.
+#[inline(always)]
+pub(super) fn filter<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> FilterVerdict<TriangleCrossing> {
+    let [a, b, c] = triangle.vertices;
+    let (e, f, s) = (b - a, c - a, ray.origin() - a);
+    let edge = triangle.edge;
+    let size = edge + (s.x.abs() + s.y.abs() + s.z.abs());
+    let spread = (ERROR * edge) * size;
+    // NaN if the direction is out of the range where this is proved.
+    let error = spread * ray.reach();
+    if size >= FARTHEST {
+        return FilterVerdict::Unsure;
+    }
+    let p = cross::<FMA>(ray.direction(), f);
+    let sum = dot::<FMA>(e, p);
+    // From here on as if the sum were positive.
+    let sign = 1f64.copysign(sum);
+    let (sum, v) = (sum.abs(), sign * dot::<FMA>(s, p));
+    let q = cross::<FMA>(s, e);
+    let w = sign * dot::<FMA>(ray.direction(), q);
+    let u = (sum - v) - w;
+    // All three at once: one branch to foretell.
+    let least = smaller(v, smaller(u, w));
+    // False for NaN.
+    if smaller(sum, least.abs()) > error {
+        if least < 0.0 {
+            return FilterVerdict::Misses;
+        }
+        let height = sign * dot::<FMA>(f, q);
+        return FilterVerdict::Crosses(TriangleCrossing { e, f, p, sign, sum, v, w, height, edge, size, spread });
+    }
+    if passes_beside(triangle, ray, error) { FilterVerdict::Misses } else { FilterVerdict::Unsure }
+}
+
+/// Whether a line of which the filter is not sure passes surely beside the triangle: two volumes have opposite signs,
+/// be it parallel to the plane or not.
+#[cold]
+#[inline(never)]
+fn passes_beside(triangle: &Triangle, ray: &Ray, error: f64) -> bool {
+    let [a, b, c] = triangle.vertices;
+    let (e, f, s) = (b - a, c - a, ray.origin() - a);
+    let p = ray.direction().cross(f);
+    let (sum, v, w) = (e.dot(p), s.dot(p), ray.direction().dot(s.cross(e)));
+    let u = (sum - v) - w;
+    smaller(u, smaller(v, w)) < -error && larger(u, larger(v, w)) > error
+}
+
+/// Whether the ray is surely not parallel to the triangle, which surely has a plane.
+pub(super) fn surely_leans(triangle: &Triangle, ray: &Ray) -> bool {
+    let [a, b, c] = triangle.vertices;
+    let error = (ERROR * triangle.edge) * triangle.edge * ray.reach();
+    triangle.edge < FARTHEST && ray.direction().cross(c - a).dot(b - a).abs() > error
+}
+
+fma_dispatch! {
+    /// Returns the correctly rounded `t` of the hit, if it is between the ends of the range.
+    pub(super) fn closest(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
+}
+
+#[inline(always)]
+pub(super) fn closest_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> {
+    let within = start..end;
+    let t = match filter::<FMA>(triangle, ray) {
+        FilterVerdict::Misses => return None,
+        FilterVerdict::Crosses(crossing) if crossing.is_before(start) => return None,
+        FilterVerdict::Crosses(crossing) => {
+            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            refined.t::<FMA>().or_else(|| again(triangle, ray, refined.corrected::<FMA>()).0)
+        }
+        FilterVerdict::Unsure => None,
+    };
+    match t {
+        Some(t) => holds(&within, t).then_some(t),
+        None => exact::closest(triangle, ray, within),
+    }
+}
+
+fma_dispatch! {
+    /// Returns the correctly rounded weights where the whole line meets the triangle.
+    pub(super) fn weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> = weights_kernel;
+}
+
+#[inline(always)]
+pub(super) fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+    let weights = match filter::<FMA>(triangle, ray) {
+        FilterVerdict::Misses => return None,
+        FilterVerdict::Crosses(crossing) => {
+            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            refined.weights::<FMA>().or_else(|| again(triangle, ray, refined.corrected::<FMA>()).1)
+        }
+        FilterVerdict::Unsure => None,
+    };
+    weights.or_else(|| exact::exact_weights(triangle, ray))
+}
+
+fma_dispatch! {
+    /// Returns both, if `t` is between the ends of the range.
+    pub(super) fn closest_with_weights(
+        triangle: &Triangle,
+        ray: &Ray,
+        start: f64,
+        end: f64,
+    ) -> Option<(f64, [f64; 3])> = both_kernel;
+}
+
+#[inline(always)]
+pub(super) fn both_kernel<const FMA: bool>(
+    triangle: &Triangle,
+    ray: &Ray,
+    start: f64,
+    end: f64,
+) -> Option<(f64, [f64; 3])> {
+    let within = start..end;
+    let (t, weights) = match filter::<FMA>(triangle, ray) {
+        FilterVerdict::Misses => return None,
+        FilterVerdict::Crosses(crossing) if crossing.is_before(start) => return None,
+        FilterVerdict::Crosses(crossing) => {
+            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            match (refined.t::<FMA>(), refined.weights::<FMA>()) {
+                (Some(t), Some(weights)) => (Some(t), Some(weights)),
+                _ => again(triangle, ray, refined.corrected::<FMA>()),
+            }
+        }
+        FilterVerdict::Unsure => (None, None),
+    };
+    match (t, weights) {
+        (Some(t), _) if !holds(&within, t) => None,
+        (Some(t), Some(weights)) => Some((t, weights)),
+        (Some(t), None) => Some((t, exact::exact_weights(triangle, ray)?)),
+        (None, _) => exact::closest_with_weights(triangle, ray, within),
+    }
+}
+
+/// One more step, from a corrected solution: for a ray that is nearly parallel to the plane.
+#[cold]
+#[inline(never)]
+pub(super) fn again(triangle: &Triangle, ray: &Ray, corrected: [f64; 3]) -> (Option<f64>, Option<[f64; 3]>) {
+    let FilterVerdict::Crosses(crossing) = filter::<false>(triangle, ray) else { return (None, None) };
+    let refined = Refined::new::<false>(&crossing, triangle, ray, corrected);
+    // False for NaN.
+    if refined.weights.iter().all(|&weight| weight >= -0.25) {
+        (refined.t::<false>(), refined.weights::<false>())
+    } else {
+        (None, None)
+    }
+}
+
+impl Triangle {
+    /// What `any` returns.
+    #[inline(always)]
+    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
+        if prepared.start.to_bits() != 0 || prepared.end != f64::INFINITY {
+            return self.candidate::<FMA>(prepared, f64::INFINITY).is_some();
+        }
+        // For the whole ray the sign of `t` is enough, and needs no division.
+        match filter::<FMA>(self, prepared.ray) {
+            FilterVerdict::Misses => return false,
+            FilterVerdict::Crosses(crossing) => {
+                let (height, error) = crossing.height();
+                if height.abs() > error {
+                    return height > 0.0;
+                }
+            }
+            FilterVerdict::Unsure => {}
+        }
+        self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some()
+    }
+
+    /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
+    /// `limit`.
+    #[inline(always)]
+    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+        match filter::<FMA>(self, prepared.ray) {
+            FilterVerdict::Misses => None,
+            FilterVerdict::Crosses(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
+                self.exact_candidate(prepared.ray, prepared.within(), limit)
+            }),
+            FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
+        Candidate::exact(exact::closest(self, ray, within), limit)
+    }
+}
