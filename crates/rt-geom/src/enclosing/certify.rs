@@ -6,12 +6,11 @@
 
 use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use glam::DVec3;
-use rt_math::exact::vector::{FromDifference, difference, dot, minus};
-use rt_math::exact::{Dyadic, Fixed, U, Window, power_of_two, two_diff, two_prod, two_sum};
+use rt_math::exact::vector::{difference, dot};
+use rt_math::exact::{U, power_of_two, two_diff, two_prod, two_sum};
 
-use super::real::Wide;
-use super::stage::{Stage, decided};
-use super::tangent::Tangent;
+use super::exact::{contains_exactly, smallest_radius};
+use super::tangent::{ORDINARY, Tangent, Wide};
 use crate::Sphere;
 use crate::simd::{self as lanes, has_fma};
 
@@ -308,91 +307,43 @@ impl Bracket {
         self.low = self.low.max(round_up(simd, reach.high, reach.low - reach.error));
         self.high = self.high.max(round_up(simd, reach.high, reach.low + reach.error));
     }
-}
 
-/// Widens the bracket so that it holds for all of `spheres`.
-pub(super) fn enclose_all(bracket: &mut Bracket, spheres: &[Sphere]) {
-    for sphere in spheres {
-        let rough = (sphere.center() - bracket.center).length() + sphere.radius();
-        // A sphere that is inside by more than the error of this estimate changes nothing.
-        if rough < bracket.low * (1.0 - 16.0 * U) {
-            continue;
+    /// Widens the bracket so that it holds for all of `spheres`.
+    pub(super) fn enclose_all(&mut self, spheres: &[Sphere]) {
+        for sphere in spheres {
+            let rough = (sphere.center() - self.center).length() + sphere.radius();
+            // A sphere that is inside by more than the error of this estimate changes nothing.
+            if rough < self.low * (1.0 - 16.0 * U) {
+                continue;
+            }
+            let from = difference::<Wide>(sphere.center(), self.center);
+            let reach = dot(&from, &from).sqrt() + Wide::new(sphere.radius());
+            let error = if from == [Wide::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
+            let up = |low: f64| {
+                let sum = reach.high() + low;
+                if low - (sum - reach.high()) > 0.0 { sum.next_up() } else { sum }
+            };
+            self.low = self.low.max(up(reach.low() - error));
+            self.high = self.high.max(up(reach.low() + error));
         }
-        let from = difference::<Wide>(sphere.center(), bracket.center);
-        let reach = dot(&from, &from).sqrt() + Wide::new(sphere.radius());
-        let error = if from == [Wide::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
-        let up = |low: f64| {
-            let sum = reach.high() + low;
-            if low - (sum - reach.high()) > 0.0 { sum.next_up() } else { sum }
-        };
-        bracket.low = bracket.low.max(up(reach.low() - error));
-        bracket.high = bracket.high.max(up(reach.low() + error));
     }
-}
 
-/// Holds what decides whether one sphere contains another, for any doubles: differences are multiples of 2^-1074 below
-/// 2^1025, which takes 35 limbs; their squares and the sum of three take 71, and the rounding of the root 68.
-type Number = Dyadic<72>;
-
-fn square_of_distance(a: DVec3, b: DVec3) -> Number {
-    let offset = difference::<Number>(a, b);
-    dot(&offset, &offset)
-}
-
-/// Whether a sphere with radius `outer` contains one with radius `inner`, given the square of the distance of the centers.
-fn holds(outer: f64, inner: f64, square: &Number) -> bool {
-    decided(Stage::Question);
-    let room = Number::from_difference(outer, inner);
-    !room.sign().is_lt() && *square <= room.square()
-}
-
-/// Whether `sphere` lies inside the sphere around `center` with `radius`, its boundary included: exactly.
-#[cold]
-#[inline(never)]
-pub(super) fn contains_exactly(center: DVec3, radius: f64, sphere: &Sphere) -> bool {
-    contains_fixed::<1, 2>(center, radius, sphere)
-        .or_else(|| contains_fixed::<2, 4>(center, radius, sphere))
-        .unwrap_or_else(|| holds(radius, sphere.radius(), &square_of_distance(center, sphere.center())))
-}
-
-/// The same in fixed-point numbers, if one window holds all: coordinates of `N` limbs, squares of `S = 2 N`.
-fn contains_fixed<const N: usize, const S: usize>(center: DVec3, radius: f64, sphere: &Sphere) -> Option<bool> {
-    let c = sphere.center();
-    let window = Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, radius, sphere.radius()])?;
-    let offset = minus(&window.vector(center), &window.vector(c));
-    let room = window.fixed(radius) - window.fixed(sphere.radius());
-    let excess = dot::<_, _, Fixed<S>>(&offset, &offset) - Fixed::product(&room, &room);
-    Some(room.sign().is_ge() && excess.sign().is_le())
-}
-
-/// The reach of `sphere` from `center` rounded to nearest, in fixed-point numbers.
-fn reach_fixed<const N: usize, const S: usize>(center: DVec3, sphere: &Sphere) -> Option<f64> {
-    let c = sphere.center();
-    let window = Window::<N>::around(&[center.x, center.y, center.z, c.x, c.y, c.z, sphere.radius()])?;
-    let (offset, r) = (minus(&window.vector(center), &window.vector(c)), window.fixed(sphere.radius()));
-    let square: Fixed<S> = dot(&offset, &offset);
-    // r + √square is a root of x² - 2 r x + (r² - square).
-    let rest = Fixed::<S>::product(&r, &r) - square;
-    Some(Fixed::root(&r, false, &square, &Fixed::<1>::ONE, &rest, window.exponent()))
-}
-
-/// The smallest double that is not below the reach of `sphere` from `center`; infinite if no finite one is.
-#[cold]
-#[inline(never)]
-pub(super) fn smallest_radius(center: DVec3, sphere: &Sphere) -> f64 {
-    decided(Stage::Question);
-    // The reach rounded to nearest: that double or the next.
-    let nearest = reach_fixed::<1, 2>(center, sphere)
-        .or_else(|| reach_fixed::<2, 4>(center, sphere))
-        .unwrap_or_else(|| reach_of_any_size(center, sphere));
-    if nearest.is_infinite() || contains_exactly(center, nearest, sphere) { nearest } else { nearest.next_up() }
-}
-
-#[cold]
-#[inline(never)]
-fn reach_of_any_size(center: DVec3, sphere: &Sphere) -> f64 {
-    let square = square_of_distance(center, sphere.center());
-    Number::root(&Number::from_f64(sphere.radius()), false, &square, &Number::power_of_two(0))
+    /// The smallest double of the bracket that encloses all spheres. Asks integers at most three questions a sphere.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn settle(&self, spheres: &[Sphere]) -> f64 {
+        let mut radius = self.low;
+        for sphere in spheres {
+            let reach = (sphere.center() - self.center).length() + sphere.radius();
+            if reach * (1.0 + 16.0 * U) <= radius {
+                continue;
+            }
+            if radius < self.high && !contains_exactly(self.center, radius, sphere) {
+                radius = smallest_radius(self.center, sphere);
+            }
+        }
+        radius
+    }
 }
 
 /// The minimal sphere of two spheres, in closed form: the bracket, and a lower bound.
@@ -432,7 +383,7 @@ fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Optio
     let radius = 0.5 * twice;
     let radius_low = 0.5 * (twice_low + (radii_low + length_low));
     let apart = nearest > radius * NEARLY_INSIDE;
-    if !apart || !super::ORDINARY.contains(&twice) {
+    if !apart || !ORDINARY.contains(&twice) {
         return None;
     }
     // The center, and by how much rounding it to doubles moved it.
@@ -475,20 +426,3 @@ const PAIR_ERROR: f64 = power_of_two(-64);
 /// With the center closer than this to that of a sphere, as a share of the radius, the bend of the distance is not
 /// small beside a unit in the last place.
 const NEARLY_INSIDE: f64 = power_of_two(-20);
-
-/// The smallest double of the bracket that encloses all spheres. Asks integers at most three questions a sphere.
-#[cold]
-#[inline(never)]
-pub(super) fn settle(bracket: &Bracket, spheres: &[Sphere]) -> f64 {
-    let mut radius = bracket.low;
-    for sphere in spheres {
-        let reach = (sphere.center() - bracket.center).length() + sphere.radius();
-        if reach * (1.0 + 16.0 * U) <= radius {
-            continue;
-        }
-        if radius < bracket.high && !contains_exactly(bracket.center, radius, sphere) {
-            radius = smallest_radius(bracket.center, sphere);
-        }
-    }
-    radius
-}

@@ -3,14 +3,14 @@
 use glam::DVec3;
 use rt_math::exact::{U, mantissa_and_exponent, scale};
 
-use super::certify::{contains_exactly, smallest_radius};
-use super::{Enclosing, enclosing_sphere};
+use super::Enclosing;
+use super::exact::{contains_exactly, smallest_radius};
 use crate::Sphere;
 
-/// [`enclosing_sphere`] for a set whose extent is out of the ordinary range.
+/// The minimal sphere of a set whose extent is out of the ordinary range; `solve` finds it for one in the range.
 #[cold]
 #[inline(never)]
-pub(super) fn extreme(spheres: &[Sphere]) -> Option<Enclosing> {
+pub(super) fn extreme(spheres: &[Sphere], solve: impl Fn(&[Sphere]) -> Option<Enclosing>) -> Option<Enclosing> {
     let origin = spheres[0].center();
     // A quarter of the extent cannot overflow; the extent itself loses no bits where that matters.
     let extent = |part: f64| {
@@ -40,7 +40,7 @@ pub(super) fn extreme(spheres: &[Sphere]) -> Option<Enclosing> {
             Sphere::new(scale(center, -exponent), scale(sphere.radius(), -exponent))
         })
         .collect::<Option<_>>()?;
-    let mut answer = enclosing_sphere(&scaled)?;
+    let mut answer = solve(&scaled)?;
     let center = scale(answer.sphere.center(), exponent) + equal;
     // The copy may have lost the last bits of small coordinates, and the center those of a subnormal one: judge the
     // spheres near the boundary themselves. Integers are asked at most three questions a sphere.

@@ -7,14 +7,12 @@
 //! is wrong for spheres: K. Fischer and B. Gärtner, "The smallest enclosing ball of balls", 2004.)
 
 mod certify;
+mod exact;
 mod extreme;
-mod few;
 pub(crate) mod nodes;
 mod pivot;
-mod real;
 mod refine;
 mod scan;
-mod stage;
 mod tangent;
 
 use fearless_simd::{Level, Simd};
@@ -25,9 +23,27 @@ use crate::Sphere;
 use crate::simd::dispatch;
 use certify::Bracket;
 use extreme::extreme;
-use pivot::{LANES, Lanes};
+use pivot::{LANES, Lanes, pivot};
 use stage::{Stage, decided};
-use tangent::Tangent;
+use tangent::{ORDINARY_SQUARES, Tangent};
+
+/// Counts, in tests only, which stage decided, and how often exact integers were asked: so that tests can show that every one
+/// is reached, and that none goes on for long.
+mod stage {
+    rt_math::count_stages! {
+        /// What decides a radius.
+        Stage {
+            /// Reaches in double-double: no double lies within their error.
+            DoubleDouble,
+            /// Exact integers.
+            Integers,
+            /// The support was sought again in double-double.
+            Refined,
+            /// A question to exact integers.
+            Question,
+        }
+    }
+}
 
 /// What [`enclosing_sphere`] gives: the sphere, the spheres that decide it, and how small any other could be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,11 +78,6 @@ pub fn enclosing_sphere(spheres: &[Sphere]) -> Option<Enclosing> {
 fn enclosing_at(level: Level, spheres: &[Sphere]) -> Option<Enclosing> {
     dispatch!(level, simd => enclosing(simd, spheres))
 }
-
-/// Within these limits of the largest reach no fourth power over- or underflows harmfully, in double-double either.
-const ORDINARY: std::ops::Range<f64> = 1e-40..1e50;
-/// The same for a number between the square of the largest reach and half of it.
-const ORDINARY_SQUARES: std::ops::Range<f64> = 1e-80..0.5e100;
 
 #[inline(always)]
 fn enclosing<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
@@ -113,10 +124,10 @@ fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Op
     let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
     let (far, square) = lanes.farthest_from_mean(simd);
     if !ORDINARY_SQUARES.contains(&square) {
-        return extreme(spheres);
+        return extreme(spheres, enclosing_sphere);
     }
     let mut tangent = Tangent::single(far);
-    few::pivot(simd, &mut tangent, &lanes, |lane| lane, spheres, origin);
+    pivot(simd, &mut tangent, &lanes, |lane| lane, spheres, origin);
     let (mut bracket, bound) = certify::certify(simd, &tangent, spheres);
     // Who else is close enough to the boundary to stick out?
     let (center, limit) = near(&tangent, &bracket, spheres, origin);
@@ -170,7 +181,7 @@ fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
             finish(spheres, &bracket, bound, tangent.support())
         },
     );
-    answer.unwrap_or_else(|| extreme(spheres))
+    answer.unwrap_or_else(|| extreme(spheres, enclosing_sphere))
 }
 
 /// The center of `tangent` less `origin`, and a limit: what reaches less far from there lies inside `bracket`.
@@ -206,7 +217,7 @@ fn refined(spheres: &[Sphere], tangent: &Tangent<f64>, fast: &Bracket, fast_boun
 fn finish(spheres: &[Sphere], bracket: &Bracket, lower_bound: f64, support: &[usize]) -> Option<Enclosing> {
     let radius = if bracket.low < bracket.high {
         decided(Stage::Integers);
-        certify::settle(bracket, spheres)
+        bracket.settle(spheres)
     } else {
         decided(Stage::DoubleDouble);
         bracket.high
@@ -229,7 +240,7 @@ fn sorted(support: &[usize]) -> ([usize; 4], usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::certify::contains_exactly;
+    use super::exact::contains_exactly;
     use super::*;
 
     fn ball(x: f64, y: f64, z: f64, r: f64) -> Sphere {

@@ -12,10 +12,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rt_math::exact::U;
 
-use super::few::pivot;
-use super::pivot::{LANES, Lanes, columns, measure};
-use super::tangent::Tangent;
-use super::{ORDINARY, ORDINARY_SQUARES, enclosing_sphere};
+use super::enclosing_sphere;
+use super::pivot::{LANES, Lanes, columns, measure, pivot};
+use super::tangent::{ORDINARY, ORDINARY_SQUARES, Tangent};
 use crate::Sphere;
 use crate::simd::dispatch;
 
@@ -357,7 +356,7 @@ fn pair(a: &Sphere, b: &Sphere) -> Option<Sphere> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::certify::contains_exactly;
+    use super::super::exact::contains_exactly;
     use super::*;
 
     /// Lists what is below the node with this range in the tree that cuts ranges into `ways` parts, down to those of at

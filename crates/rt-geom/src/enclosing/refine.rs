@@ -7,9 +7,8 @@ use glam::DVec3;
 use rt_math::exact::U;
 use rt_math::exact::vector::dot;
 
-use super::certify::{Bracket, enclose_all};
-use super::real::{Real, Wide};
-use super::tangent::Tangent;
+use super::certify::Bracket;
+use super::tangent::{Real, Tangent, Wide};
 use crate::Sphere;
 
 /// Returns the support, a bracket around the center rounded to doubles, and a lower bound.
@@ -82,7 +81,7 @@ fn farthest(tangent: &Tangent<Wide>, spheres: &[Sphere], these: impl Iterator<It
 /// Brackets the radius that encloses all spheres around a center.
 fn bracket(spheres: &[Sphere], center: DVec3) -> Bracket {
     let mut bracket = Bracket { center, low: 0.0, high: 0.0 };
-    enclose_all(&mut bracket, spheres);
+    bracket.enclose_all(spheres);
     bracket
 }
 

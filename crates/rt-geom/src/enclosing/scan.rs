@@ -4,10 +4,8 @@ use fearless_simd::{Simd, f64x8, prelude::*, u64x8};
 use glam::DVec3;
 use rt_math::exact::U;
 
-use super::ORDINARY;
-use super::few::{TOUCHES, pivot};
-use super::pivot::{LANES, Lanes, columns, marked, measure};
-use super::tangent::Tangent;
+use super::pivot::{LANES, Lanes, TOUCHES, columns, marked, measure, pivot};
+use super::tangent::{ORDINARY, Tangent};
 use crate::Sphere;
 use crate::simd::prefetch_lines;
 
@@ -381,7 +379,7 @@ fn farthest<S: Simd>(
 mod tests {
     use fearless_simd::Fallback;
 
-    use super::super::certify::contains_exactly;
+    use super::super::exact::contains_exactly;
     use super::*;
 
     /// Blocks of spheres around the origin with radii made of numbers in 0..1.
