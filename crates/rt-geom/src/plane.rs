@@ -20,6 +20,7 @@ use crate::Triangle;
 /// let triangle = Triangle::new(2.0 * DVec3::X, 4.0 * DVec3::Y, 8.0 * DVec3::Z).unwrap();
 /// assert_eq!(plane_by_pseudo_inverse(&triangle), DVec3::new(0.5, 0.25, 0.125));
 /// ```
+#[must_use]
 pub fn plane_by_pseudo_inverse(triangle: &Triangle) -> DVec3 {
     let [a, b, c] = triangle.vertices();
     let rows = DMat3::from_cols(a, b, c).transpose();

@@ -26,6 +26,7 @@ pub struct Ray {
 impl Ray {
     /// Returns the ray, or `None` if a component is not finite or the direction is zero.
     #[inline]
+    #[must_use]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Self> {
         const LONGEST: f64 = power_of_two(100);
         let reach = max_abs(direction);
@@ -42,12 +43,14 @@ impl Ray {
 
     /// Where the ray starts; finite.
     #[inline]
+    #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
     /// Where the ray goes; finite and not zero, of any length.
     #[inline]
+    #[must_use]
     pub fn direction(&self) -> DVec3 {
         self.direction
     }
@@ -58,6 +61,7 @@ impl Ray {
     /// `u (2.01 |t direction| + 1.01 |point|)`, barring over- and underflow; `docs/numerics.md`, section 5, has the
     /// proof.
     #[inline]
+    #[must_use]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
     }

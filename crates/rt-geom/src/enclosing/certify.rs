@@ -100,6 +100,13 @@ fn round_up<S: Simd>(simd: S, high: f64x4<S>, low: f64x4<S>) -> f64 {
     up.reduce_max()
 }
 
+/// The smallest double that is not below `high + low`, for `high` the larger by far.
+#[inline(always)]
+fn sum_up(high: f64, low: f64) -> f64 {
+    let sum = high + low;
+    if low - (sum - high) > 0.0 { sum.next_up() } else { sum }
+}
+
 /// Moves the center of `tangent` to the doubles nearest to the true center, and brackets the radius there.
 ///
 /// Returns the bracket, and a lower bound for the radius of any sphere that encloses the spheres of `tangent`.
@@ -158,19 +165,57 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
 /// Returns the bracket, a lower bound, and whether the nearest doubles are clear.
 #[inline(always)]
 fn certify_in_place<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64, bool) {
-    let first = spheres[0];
-    let origin = first.center();
-    let [k1, k2, k3] = tangent.dual;
-    let q = DVec3::from(tangent.q);
-    let (k1, k2, k3) = (DVec3::from(k1), DVec3::from(k2), DVec3::from(k3));
+    let origin = spheres[0].center();
     let mut center = origin + DVec3::from(tangent.x);
     let mut rounds = 0;
     loop {
         let reach = reach(simd, spheres, center);
-        // One Newton step: the reaches less the first one are the residuals.
         let base = reach.high[0];
-        let base_low = reach.low[0];
-        let residual = (reach.high - base) + (reach.low - base_low);
+        let step = NewtonStep::new(simd, tangent, origin, center, &reach);
+        rounds += 1;
+        let good = step.error.reduce_max() <= base * NEGLIGIBLE;
+        if !good && rounds < MAX_ROUNDS {
+            center = step.to;
+            continue;
+        }
+        // Where doubles lie far apart, of a center half-way between two both are to be tried.
+        let coarse = step.to.abs().max_element() * U > 32.0 * U * base;
+        let clear = !(coarse && half_way(step.to, step.rest));
+        let step = if good { step } else { NewtonStep::none(simd, center, &reach) };
+        let low = reach.low + step.along;
+        let bracket = Bracket {
+            center: step.to,
+            low: round_up(simd, reach.high, low - step.error),
+            high: round_up(simd, reach.high, low + step.error),
+        };
+        let bound = lower_bound(simd, tangent, &reach, &step, bracket.high);
+        return (bracket, bound.max(spheres[0].radius()), clear);
+    }
+}
+
+/// A step of Newton's iteration for the center from which all spheres reach equally far.
+struct NewtonStep<S: Simd> {
+    /// The next center.
+    to: DVec3,
+    /// What rounding took from it.
+    rest: DVec3,
+    /// From the last center to the next.
+    by: DVec3,
+    /// At least the length of that, and sooner known.
+    length: f64,
+    /// What the reaches grow by, and the error of the reaches then.
+    along: f64x4<S>,
+    error: f64x4<S>,
+}
+
+impl<S: Simd> NewtonStep<S> {
+    #[inline(always)]
+    fn new(simd: S, tangent: &Tangent<f64>, origin: DVec3, center: DVec3, reach: &Reach<S>) -> Self {
+        let [k1, k2, k3] = tangent.dual;
+        let (k1, k2, k3) = (DVec3::from(k1), DVec3::from(k2), DVec3::from(k3));
+        let q = DVec3::from(tangent.q);
+        // The reaches less the first one are the residuals.
+        let residual = (reach.high - reach.high[0]) + (reach.low - reach.low[0]);
         let moved = residual * reach.distance;
         let a = k1 * moved[1] + k2 * moved[2] + k3 * moved[3];
         let x = center - origin;
@@ -182,57 +227,49 @@ fn certify_in_place<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere;
         let seen = dx * lost.x + dy * lost.y + dz * lost.z;
         let inside = k1 * (seen[0] - seen[1]) + k2 * (seen[0] - seen[2]) + k3 * (seen[0] - seen[3]);
         let wish = a + q * wider - (lost - inside);
-        let next = center + wish;
-        let next = if next.is_finite() { next } else { center };
-        let step = next - center;
+        let to = center + wish;
+        let to = if to.is_finite() { to } else { center };
+        let by = to - center;
         // The reaches at the next center: |v + e| is between |v| + u.e and that plus |e|² / 2|v|.
-        let along = (dx * step.x + dy * step.y + dz * step.z) * reach.inverse;
-        // (At least the length, and sooner known.)
-        let length = step.abs().element_sum();
+        let along = (dx * by.x + dy * by.y + dz * by.z) * reach.inverse;
+        let length = by.abs().element_sum();
         let bend = reach.inverse * (length * length);
         let none = f64x4::splat(simd, 0.0);
         let still = f64x4::splat(simd, length).simd_eq(none);
         let along = still.select(none, along);
         let error = reach.error + still.select(none, bend + 16.0 * U * length);
-        rounds += 1;
-        let good = error.reduce_max() <= base * NEGLIGIBLE;
-        if !good && rounds < MAX_ROUNDS {
-            center = next;
-            continue;
-        }
-        let still = !good;
-        // Where doubles lie far apart, of a center half-way between two both are to be tried.
-        let coarse = next.abs().max_element() * U > 32.0 * U * base;
-        let clear = !(coarse && half_way(next, wish - step));
-        let (next, step, length) = if still { (center, DVec3::ZERO, 0.0) } else { (next, step, length) };
-        let along = if still { none } else { along };
-        let error = if still { reach.error } else { error };
-        let low = reach.low + along;
-        let bracket = Bracket {
-            center: next,
-            low: round_up(simd, reach.high, low - error),
-            high: round_up(simd, reach.high, low + error),
-        };
-        // The lower bound: weights that nearly balance the directions from the touching points to the center.
-        let weight = f64x4::simd_from(simd, tangent.weight).max(none);
-        let share = weight * reach.distance;
-        let total = share.reduce_sum();
-        let mean = (share * ((reach.high - base) + low)).reduce_sum() / total;
-        let pull = (weight * (dx + step.x)).reduce_sum().abs()
-            + (weight * (dy + step.y)).reduce_sum().abs()
-            + (weight * (dz + step.z)).reduce_sum().abs();
-        let nearest = reach.distance.reduce_min();
-        let pull = pull / total + 16.0 * U + 2.0 * length / nearest;
-        let most = bracket.high;
-        let gap = (most - base) - mean + 2.0 * most * pull;
-        let far = gap * (0.5 / BALANCE) + most * BALANCE;
-        let slack = error.reduce_max() + pull * far + 8.0 * U * mean.abs();
-        let below = mean - slack * (1.0 + 16.0 * U);
-        let sum = base + below;
-        let bound = sum - if below - (sum - base) < 0.0 { sum * SPACING } else { 0.0 };
-        let bound = if bound > first.radius() { bound } else { first.radius() };
-        return (bracket, bound, clear);
+        Self { to, rest: wish - by, by, length, along, error }
     }
+
+    /// To stay where the reaches are known.
+    #[inline(always)]
+    fn none(simd: S, center: DVec3, reach: &Reach<S>) -> Self {
+        let along = f64x4::splat(simd, 0.0);
+        Self { to: center, rest: DVec3::ZERO, by: DVec3::ZERO, length: 0.0, along, error: reach.error }
+    }
+}
+
+/// The lower bound, from weights that nearly balance the directions from the touching points to the center; `most` is the
+/// radius around it.
+#[inline(always)]
+fn lower_bound<S: Simd>(simd: S, tangent: &Tangent<f64>, reach: &Reach<S>, step: &NewtonStep<S>, most: f64) -> f64 {
+    let base = reach.high[0];
+    let [dx, dy, dz] = reach.offset;
+    let weight = f64x4::simd_from(simd, tangent.weight).max(f64x4::splat(simd, 0.0));
+    let share = weight * reach.distance;
+    let total = share.reduce_sum();
+    let mean = (share * ((reach.high - base) + (reach.low + step.along))).reduce_sum() / total;
+    let pull = (weight * (dx + step.by.x)).reduce_sum().abs()
+        + (weight * (dy + step.by.y)).reduce_sum().abs()
+        + (weight * (dz + step.by.z)).reduce_sum().abs();
+    let nearest = reach.distance.reduce_min();
+    let pull = pull / total + 16.0 * U + 2.0 * step.length / nearest;
+    let gap = (most - base) - mean + 2.0 * most * pull;
+    let far = gap * (0.5 / BALANCE) + most * BALANCE;
+    let slack = step.error.reduce_max() + pull * far + 8.0 * U * mean.abs();
+    let below = mean - slack * (1.0 + 16.0 * U);
+    let sum = base + below;
+    sum - if below - (sum - base) < 0.0 { sum * SPACING } else { 0.0 }
 }
 
 /// Whether `rest`, what rounding took from `center`, is so close to half the spacing of doubles on some axis that its
@@ -319,12 +356,8 @@ impl Bracket {
             let from = difference::<Wide>(sphere.center(), self.center);
             let reach = dot(&from, &from).sqrt() + Wide::new(sphere.radius());
             let error = if from == [Wide::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
-            let up = |low: f64| {
-                let sum = reach.high() + low;
-                if low - (sum - reach.high()) > 0.0 { sum.next_up() } else { sum }
-            };
-            self.low = self.low.max(up(reach.low() - error));
-            self.high = self.high.max(up(reach.low() + error));
+            self.low = self.low.max(sum_up(reach.high(), reach.low() - error));
+            self.high = self.high.max(sum_up(reach.high(), reach.low() + error));
         }
     }
 
@@ -407,16 +440,9 @@ fn pair_with<S: Simd, const FMA: bool>(simd: S, a: &Sphere, b: &Sphere) -> Optio
     if error > radius * PAIR_ERROR {
         return Some((Bracket::around(simd, place(center), place(-e), [a, b, a, b], 2), bound));
     }
-    let up = |low: f64| {
-        let sum = radius + low;
-        if low - (sum - radius) > 0.0 { sum.next_up() } else { sum }
-    };
-    let bracket = Bracket {
-        center: place(center),
-        low: up((radius_low + along) - error),
-        high: up((radius_low + along) + error),
-    };
-    Some((bracket, bound))
+    let low = sum_up(radius, (radius_low + along) - error);
+    let high = sum_up(radius, (radius_low + along) + error);
+    Some((Bracket { center: place(center), low, high }, bound))
 }
 
 /// With a larger error of the radius, as a share of it, the reaches are computed anew at the center rounded to doubles.

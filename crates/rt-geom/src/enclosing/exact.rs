@@ -9,17 +9,17 @@ use crate::Sphere;
 
 /// Holds what decides whether one sphere contains another, for any doubles: differences are multiples of 2^-1074 below
 /// 2^1025, which takes 35 limbs; their squares and the sum of three take 71, and the rounding of the root 68.
-type Number = Dyadic<72>;
+type ReachInteger = Dyadic<72>;
 
-fn square_of_distance(a: DVec3, b: DVec3) -> Number {
-    let offset = difference::<Number>(a, b);
+fn square_of_distance(a: DVec3, b: DVec3) -> ReachInteger {
+    let offset = difference::<ReachInteger>(a, b);
     dot(&offset, &offset)
 }
 
 /// Whether a sphere with radius `outer` contains one with radius `inner`, given the square of the distance of the centers.
-fn holds(outer: f64, inner: f64, square: &Number) -> bool {
+fn holds(outer: f64, inner: f64, square: &ReachInteger) -> bool {
     decided(Stage::Question);
-    let room = Number::from_difference(outer, inner);
+    let room = ReachInteger::from_difference(outer, inner);
     !room.sign().is_lt() && *square <= room.square()
 }
 
@@ -69,5 +69,5 @@ pub(super) fn smallest_radius(center: DVec3, sphere: &Sphere) -> f64 {
 #[inline(never)]
 fn reach_of_any_size(center: DVec3, sphere: &Sphere) -> f64 {
     let square = square_of_distance(center, sphere.center());
-    Number::root(&Number::from_f64(sphere.radius()), false, &square, &Number::power_of_two(0))
+    ReachInteger::root(&ReachInteger::from_f64(sphere.radius()), false, &square, &ReachInteger::power_of_two(0))
 }

@@ -23,7 +23,7 @@ use crate::Sphere;
 use crate::simd::dispatch;
 use certify::Bracket;
 use extreme::extreme;
-use pivot::{LANES, Lanes, pivot};
+use pivot::{LANES, SphereLanes, pivot};
 use stage::{Stage, decided};
 use tangent::{ORDINARY_SQUARES, Tangent};
 
@@ -62,6 +62,7 @@ impl Enclosing {
     }
 
     /// The indices of the spheres that decide the answer: one to four, ascending.
+    #[must_use]
     pub fn support(&self) -> &[usize] {
         &self.support[..self.support_len]
     }
@@ -70,6 +71,7 @@ impl Enclosing {
 /// Returns the minimal sphere that encloses all `spheres`.
 ///
 /// `None` if there are none, or if no sphere with a finite double radius encloses them.
+#[must_use]
 pub fn enclosing_sphere(spheres: &[Sphere]) -> Option<Enclosing> {
     enclosing_at(Level::new(), spheres)
 }
@@ -121,7 +123,7 @@ fn two<S: Simd>(simd: S, spheres: &[Sphere], a: &Sphere, b: &Sphere) -> Option<E
 #[inline(always)]
 fn few_spheres<S: Simd, const VECTORS: usize>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
     let origin = spheres[0].center();
-    let lanes = Lanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
+    let lanes = SphereLanes::<S, VECTORS>::new(simd, spheres.iter(), origin);
     let (far, square) = lanes.farthest_from_mean(simd);
     if !ORDINARY_SQUARES.contains(&square) {
         return extreme(spheres, enclosing_sphere);

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use rt_math::exact::U;
 
 use super::enclosing_sphere;
-use super::pivot::{LANES, Lanes, columns, measure, pivot};
+use super::pivot::{LANES, SphereLanes, for_eights, measure, pivot};
 use super::tangent::{ORDINARY, ORDINARY_SQUARES, Tangent};
 use crate::Sphere;
 use crate::simd::dispatch;
@@ -61,18 +61,18 @@ pub(crate) fn enclosing_nodes(leaves: &[Sphere], nodes: &[Node]) -> Vec<Option<S
     above.sort_unstable();
 
     let level = Level::new();
-    let mut found = vec![Found::NOTHING; nodes.len()];
+    let mut found = vec![NodeSphere::NOTHING; nodes.len()];
     let mut bounds: Vec<Sphere> = nodes.iter().map(|node| leaves[node.leaves.start]).collect();
     let mut parts = Vec::with_capacity(pieces.len());
     let (mut rest, mut at) = ((&mut found[..], &mut bounds[..]), 0);
     for piece in pieces {
         let found = rest.0.split_at_mut(piece.start - at).1.split_at_mut(piece.len());
         let bounds = rest.1.split_at_mut(piece.start - at).1.split_at_mut(piece.len());
-        parts.push(Part { leaves, nodes, first: piece.start, found: found.0, bounds: bounds.0 });
+        parts.push(Subtrees { leaves, nodes, first: piece.start, found: found.0, bounds: bounds.0 });
         (rest, at) = ((found.1, bounds.1), piece.end);
     }
     parts.into_par_iter().for_each(|mut part| part.solve(level, 0..part.found.len()));
-    Part { leaves, nodes, first: 0, found: &mut found, bounds: &mut bounds }.solve(level, above);
+    Subtrees { leaves, nodes, first: 0, found: &mut found, bounds: &mut bounds }.solve(level, above);
     found.into_iter().map(|found| found.sphere).collect()
 }
 
@@ -87,13 +87,13 @@ fn short(index: usize) -> u32 {
 
 /// What is known of a finished node.
 #[derive(Clone, Copy)]
-struct Found {
+struct NodeSphere {
     sphere: Option<Sphere>,
     support: [u32; 4],
     support_len: u32,
 }
 
-impl Found {
+impl NodeSphere {
     const NOTHING: Self = Self { sphere: None, support: [0; 4], support_len: 0 };
 
     fn new(sphere: Option<Sphere>, support: &[usize]) -> Self {
@@ -106,12 +106,12 @@ impl Found {
 }
 
 /// Nodes that lie together and what is known of them.
-struct Part<'a> {
+struct Subtrees<'a> {
     leaves: &'a [Sphere],
     nodes: &'a [Node],
     /// The first node of this part.
     first: usize,
-    found: &'a mut [Found],
+    found: &'a mut [NodeSphere],
     /// The spheres of the finished nodes, without a gap.
     bounds: &'a mut [Sphere],
 }
@@ -125,7 +125,7 @@ const MOST: usize = 8 * LANES;
 /// Nodes with at most so many leaves are solved over all of them.
 const SMALL: usize = 2 * LANES;
 
-impl Part<'_> {
+impl Subtrees<'_> {
     /// Solves the nodes at some places of this part, children first.
     fn solve(&mut self, level: Level, places: impl IntoIterator<Item = usize>) {
         let mut stack = Vec::new();
@@ -138,13 +138,13 @@ impl Part<'_> {
         }
     }
 
-    fn node<S: Simd>(&self, simd: S, node: &Node, stack: &mut Vec<usize>) -> Found {
+    fn node<S: Simd>(&self, simd: S, node: &Node, stack: &mut Vec<usize>) -> NodeSphere {
         let range = node.leaves.clone();
         match &self.leaves[range.clone()] {
-            [one] => return Found::new(Some(*one), &[range.start]),
+            [one] => return NodeSphere::new(Some(*one), &[range.start]),
             [a, b] => {
                 if let Some(sphere) = pair(a, b) {
-                    return Found::new(Some(sphere), &[range.start, range.start + 1]);
+                    return NodeSphere::new(Some(sphere), &[range.start, range.start + 1]);
                 }
             }
             _ => {}
@@ -191,13 +191,13 @@ impl Part<'_> {
         node: &Node,
         these: &[usize],
         stack: &mut Vec<usize>,
-    ) -> Option<Found> {
+    ) -> Option<NodeSphere> {
         let origin = self.leaves[*these.first()?].center();
         let (lanes, far, square) = simd.vectorize(
             #[inline(always)]
             || {
                 let listed = these.iter().map(|&index| &self.leaves[index]);
-                let lanes = Lanes::<S, VECTORS>::new(simd, listed, origin);
+                let lanes = SphereLanes::<S, VECTORS>::new(simd, listed, origin);
                 let (far, square) = lanes.farthest_from_mean(simd);
                 (lanes, far, square)
             },
@@ -214,7 +214,7 @@ impl Part<'_> {
             let (far, reach) = self.farthest(simd, node, center, radius, &mut visits, stack)?;
             if reach <= radius * (1.0 + 16.0 * U) + spacing {
                 let sphere = Sphere::new(center, reach * (1.0 + 16.0 * U));
-                return Some(Found::new(sphere, tangent.support()));
+                return Some(NodeSphere::new(sphere, tangent.support()));
             }
             if tangent.has(far) {
                 return None;
@@ -296,15 +296,15 @@ impl Part<'_> {
     /// All leaves as a set of their own: the careful way.
     #[cold]
     #[inline(never)]
-    fn whole(&self, range: Range<usize>) -> Found {
+    fn whole(&self, range: Range<usize>) -> NodeSphere {
         let Some(answer) = enclosing_sphere(&self.leaves[range.clone()]) else {
-            return Found::new(None, &[range.start]);
+            return NodeSphere::new(None, &[range.start]);
         };
         let mut support = [range.start; 4];
         for (place, &index) in support.iter_mut().zip(answer.support()) {
             *place += index;
         }
-        Found::new(Some(answer.sphere), &support[..answer.support().len()])
+        NodeSphere::new(Some(answer.sphere), &support[..answer.support().len()])
     }
 }
 
@@ -314,17 +314,18 @@ fn beyond<S: Simd>(simd: S, spheres: &[Sphere], center: DVec3, limit: f64) -> u6
     simd.vectorize(
         #[inline(always)]
         || {
-            let (eights, rest) = spheres.as_chunks::<LANES>();
-            let mut found = 0;
-            for (block, eight) in eights.iter().enumerate() {
-                let measure = measure(simd, &columns(simd, eight.each_ref(), center), [0.0; 3], limit);
-                found |= measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask() << (block * LANES);
-            }
-            if let Some(first) = rest.first() {
-                let eight = std::array::from_fn(|i| rest.get(i).unwrap_or(first));
-                let measure = measure(simd, &columns(simd, eight, center), [0.0; 3], limit);
-                found |= measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask() << (eights.len() * LANES);
-            }
+            let (mut found, mut place) = (0, 0);
+            for_eights(
+                simd,
+                spheres,
+                center,
+                #[inline(always)]
+                |eight| {
+                    let measure = measure(simd, eight, [0.0; 3], limit);
+                    found |= measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask() << place;
+                    place += LANES;
+                },
+            );
             // (A lane beyond the end stands for the first of its eight.)
             found & (u64::MAX >> (MOST - spheres.len()))
         },

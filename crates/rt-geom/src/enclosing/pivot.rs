@@ -16,7 +16,7 @@ pub(super) const LANES: usize = 8;
 pub(super) fn pivot<S: Simd, const VECTORS: usize>(
     simd: S,
     tangent: &mut Tangent<f64>,
-    lanes: &Lanes<S, VECTORS>,
+    lanes: &SphereLanes<S, VECTORS>,
     place: impl Fn(usize) -> usize,
     spheres: &[Sphere],
     origin: DVec3,
@@ -45,13 +45,13 @@ const MAX_PIVOTS: usize = 100;
 
 /// Spheres by coordinate, relative to an origin. Unused lanes repeat the first sphere.
 #[derive(Clone, Copy)]
-pub(super) struct Lanes<S: Simd, const VECTORS: usize> {
+pub(super) struct SphereLanes<S: Simd, const VECTORS: usize> {
     vectors: [[f64x8<S>; 4]; VECTORS],
     used: usize,
     count: usize,
 }
 
-impl<S: Simd, const VECTORS: usize> Lanes<S, VECTORS> {
+impl<S: Simd, const VECTORS: usize> SphereLanes<S, VECTORS> {
     /// Takes at least one sphere, and at most eight to a vector.
     #[inline(always)]
     pub(super) fn new<'a>(simd: S, spheres: impl ExactSizeIterator<Item = &'a Sphere> + Clone, origin: DVec3) -> Self {
@@ -142,6 +142,22 @@ pub(super) fn columns<S: Simd>(simd: S, eight: [&Sphere; LANES], origin: DVec3) 
     let (x, z) = xz.deinterleave(xz_more);
     let (y, r) = yr.deinterleave(yr_more);
     [x - origin.x, y - origin.y, z - origin.z, r]
+}
+
+/// Calls `visit` with eight spheres by coordinate after the other; at the end the first of the last eight is repeated.
+#[inline(always)]
+pub(super) fn for_eights<S: Simd>(simd: S, spheres: &[Sphere], origin: DVec3, mut visit: impl FnMut(&[f64x8<S>; 4])) {
+    let (eights, rest) = spheres.as_chunks::<LANES>();
+    for eight in eights {
+        visit(&columns(simd, eight.each_ref(), origin));
+    }
+    if let Some(first) = rest.first() {
+        let eight = std::array::from_fn(
+            #[inline(always)]
+            |i| rest.get(i).unwrap_or(first),
+        );
+        visit(&columns(simd, eight, origin));
+    }
 }
 
 /// How far spheres stick out of the one around `center`: `d² - (radius - r)²`, where the square has the sign of what is

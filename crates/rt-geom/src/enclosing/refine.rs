@@ -8,7 +8,7 @@ use rt_math::exact::U;
 use rt_math::exact::vector::dot;
 
 use super::certify::Bracket;
-use super::tangent::{Real, Tangent, Wide};
+use super::tangent::{SolverNumber, Tangent, Wide};
 use crate::Sphere;
 
 /// Returns the support, a bracket around the center rounded to doubles, and a lower bound.
@@ -35,7 +35,7 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
         }
     }
     let (center, _) = tangent.sphere(spheres, DVec3::ZERO);
-    let mut best = bracket(spheres, DVec3::from(center.map(Real::round)));
+    let mut best = bracket(spheres, DVec3::from(center.map(SolverNumber::round)));
     // Far from the origin doubles lie far apart, and which of the eight around the center is best shows.
     if best.center.abs().max_element() > best.high {
         let away = |c: Wide| if c.low() > 0.0 { c.high().next_up() } else { c.high().next_down() };
@@ -59,7 +59,7 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
 /// stick out by more than a rounding error.
 fn farthest(tangent: &Tangent<Wide>, spheres: &[Sphere], these: impl Iterator<Item = usize>) -> Option<usize> {
     let (center, radius) = tangent.sphere(spheres, DVec3::ZERO);
-    let center = DVec3::from(center.map(Real::round));
+    let center = DVec3::from(center.map(SolverNumber::round));
     let radius = radius.round();
     // What lies inside by more than the rounding of the center and of the reach need not be looked at closely.
     let spacing = center.abs().max_element() * (4.0 * U);

@@ -4,7 +4,7 @@ use fearless_simd::{Simd, f64x8, prelude::*, u64x8};
 use glam::DVec3;
 use rt_math::exact::U;
 
-use super::pivot::{LANES, Lanes, TOUCHES, columns, marked, measure, pivot};
+use super::pivot::{LANES, SphereLanes, TOUCHES, for_eights, marked, measure, pivot};
 use super::tangent::{ORDINARY, Tangent};
 use crate::Sphere;
 use crate::simd::prefetch_lines;
@@ -30,7 +30,7 @@ const AHEAD: usize = 256;
 const SMALL: usize = 64;
 
 /// The spheres of a set, or a sample of them, in blocks, and how far each may reach.
-pub(super) struct Blocks<'a> {
+pub(super) struct SphereBlocks<'a> {
     spheres: &'a [Sphere],
     origin: DVec3,
     /// Spheres to a block.
@@ -58,7 +58,7 @@ pub(super) fn support<S: Simd, T>(
     simd: S,
     spheres: &[Sphere],
     origin: DVec3,
-    visit: impl FnOnce(Tangent<f64>, Blocks) -> T,
+    visit: impl FnOnce(Tangent<f64>, SphereBlocks) -> T,
 ) -> Option<T> {
     let count = spheres.len().div_ceil(BLOCK);
     let large = count > SMALL;
@@ -73,16 +73,16 @@ pub(super) fn support<S: Simd, T>(
     if large {
         let stride = RUN * SAMPLE;
         let bounds = &mut bounds[..spheres.len() / stride];
-        let mut sample = Blocks::new(spheres, origin, RUN, stride, bounds, large);
+        let mut sample = SphereBlocks::new(spheres, origin, RUN, stride, bounds, large);
         // (Of a sample that is a single point nothing can be learned.)
         start = sample.rounds(simd, None);
     }
-    let mut blocks = Blocks::new(spheres, origin, BLOCK, BLOCK, bounds, large);
+    let mut blocks = SphereBlocks::new(spheres, origin, BLOCK, BLOCK, bounds, large);
     let tangent = blocks.rounds(simd, start.as_ref())?;
     Some(visit(tangent, blocks))
 }
 
-impl<'a> Blocks<'a> {
+impl<'a> SphereBlocks<'a> {
     fn new(
         spheres: &'a [Sphere],
         origin: DVec3,
@@ -156,14 +156,18 @@ impl<'a> Blocks<'a> {
         let mut high = [f64x8::splat(simd, f64::NEG_INFINITY); 3];
         for block in 0..self.bounds.len() {
             self.prefetch(block + AHEAD / self.size);
-            let (eights, rest) = self.block(block).as_chunks::<LANES>();
-            for eight in eights {
-                widen(&mut low, &mut high, &columns(simd, eight.each_ref(), self.origin));
-            }
-            if let Some(first) = rest.first() {
-                let eight = std::array::from_fn(|i| rest.get(i).unwrap_or(first));
-                widen(&mut low, &mut high, &columns(simd, eight, self.origin));
-            }
+            for_eights(
+                simd,
+                self.block(block),
+                self.origin,
+                #[inline(always)]
+                |[x, y, z, r]| {
+                    for ((low, high), c) in low.iter_mut().zip(&mut high).zip([x, y, z]) {
+                        *low = low.min(*c - *r);
+                        *high = high.max(*c + *r);
+                    }
+                },
+            );
         }
         let low = [low[0].reduce_min(), low[1].reduce_min(), low[2].reduce_min()];
         let high = [high[0].reduce_max(), high[1].reduce_max(), high[2].reduce_max()];
@@ -247,19 +251,23 @@ impl<'a> Blocks<'a> {
         let skip = self.skip(limit);
         for (block, bound) in self.bounds.iter().enumerate() {
             if *bound > skip {
-                for (i, eight) in self.block(block).chunks(LANES).enumerate() {
-                    let count = eight.len();
-                    let eight = std::array::from_fn(
-                        #[inline(always)]
-                        |i| eight.get(i).unwrap_or(&eight[0]),
-                    );
-                    let measure = measure(simd, &columns(simd, eight, self.origin), center, limit);
-                    let beyond = measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask();
-                    let mut found = beyond & (u64::MAX >> (64 - count));
-                    while found != 0 {
-                        visit(block * self.stride + LANES * i + found.trailing_zeros() as usize);
-                        found &= found - 1;
-                    }
+                let spheres = self.block(block);
+                let (mut found, mut place) = (0, 0);
+                for_eights(
+                    simd,
+                    spheres,
+                    self.origin,
+                    #[inline(always)]
+                    |eight| {
+                        let measure = measure(simd, eight, center, limit);
+                        found |= measure.simd_ge(f64x8::splat(simd, 0.0)).to_bitmask() << place;
+                        place += LANES;
+                    },
+                );
+                found &= u64::MAX >> (BLOCK - spheres.len());
+                while found != 0 {
+                    visit(block * self.stride + found.trailing_zeros() as usize);
+                    found &= found - 1;
                 }
             }
         }
@@ -324,20 +332,11 @@ const MAX_ROUNDS: usize = 64;
 fn among<S: Simd>(simd: S, tangent: &mut Tangent<f64>, these: &[usize], spheres: &[Sphere], origin: DVec3) {
     let listed = these.iter().map(|&index| &spheres[index]);
     if these.len() <= 3 * LANES {
-        let lanes = Lanes::<S, 3>::new(simd, listed, origin);
+        let lanes = SphereLanes::<S, 3>::new(simd, listed, origin);
         pivot(simd, tangent, &lanes, |lane| these[lane], spheres, origin);
     } else {
-        let lanes = Lanes::<S, { FEW / LANES }>::new(simd, listed, origin);
+        let lanes = SphereLanes::<S, { FEW / LANES }>::new(simd, listed, origin);
         pivot(simd, tangent, &lanes, |lane| these[lane], spheres, origin);
-    }
-}
-
-/// Widens a box by eight spheres.
-#[inline(always)]
-fn widen<S: Simd>(low: &mut [f64x8<S>; 3], high: &mut [f64x8<S>; 3], [x, y, z, r]: &[f64x8<S>; 4]) {
-    for ((low, high), c) in low.iter_mut().zip(high).zip([x, y, z]) {
-        *low = low.min(*c - *r);
-        *high = high.max(*c + *r);
     }
 }
 
@@ -353,22 +352,19 @@ fn farthest<S: Simd>(
     let mut most = f64x8::splat(simd, f64::NEG_INFINITY);
     let mut lane = u64x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
     let mut largest = f64x8::splat(simd, 0.0);
-    let (eights, rest) = block.as_chunks::<LANES>();
-    for eight in eights {
-        let columns = columns(simd, eight.each_ref(), origin);
-        let measure = measure(simd, &columns, center, radius);
-        largest = largest.max(columns[3]);
-        // An infinite measure with a mark would be no number.
-        most = most.max(marked(measure.min(f64x8::splat(simd, f64::MAX)), lane));
-        lane += LANES as u64;
-    }
-    if let Some(first) = rest.first() {
-        let eight = std::array::from_fn(|i| rest.get(i).unwrap_or(first));
-        let columns = columns(simd, eight, origin);
-        let measure = measure(simd, &columns, center, radius);
-        largest = largest.max(columns[3]);
-        most = most.max(marked(measure.min(f64x8::splat(simd, f64::MAX)), lane));
-    }
+    for_eights(
+        simd,
+        block,
+        origin,
+        #[inline(always)]
+        |eight| {
+            let measure = measure(simd, eight, center, radius);
+            largest = largest.max(eight[3]);
+            // An infinite measure with a mark would be no number.
+            most = most.max(marked(measure.min(f64x8::splat(simd, f64::MAX)), lane));
+            lane += LANES as u64;
+        },
+    );
     let most = most.reduce_max();
     // A lane beyond the end stands for the first of its eight.
     let at = (most.to_bits() & 63) as usize;
@@ -411,7 +407,7 @@ mod tests {
                 let center = DVec3::new(0.01 * f64::from(round), -0.02, 0.3);
                 let radius = 0.05 * f64::from(round + 1);
                 let mut bounds = vec![f64::INFINITY; spheres.len() / BLOCK];
-                let mut blocks = Blocks::new(spheres, DVec3::ZERO, BLOCK, BLOCK, &mut bounds, round % 2 == 0);
+                let mut blocks = SphereBlocks::new(spheres, DVec3::ZERO, BLOCK, BLOCK, &mut bounds, round % 2 == 0);
                 blocks.center = center.into();
                 let out = blocks.scan(simd, center.into(), radius);
                 for (block, &bound) in spheres.chunks(BLOCK).zip(&bounds) {

@@ -21,7 +21,7 @@ pub(super) const ORDINARY: Range<f64> = 1e-40..1e50;
 pub(super) const ORDINARY_SQUARES: Range<f64> = 1e-80..0.5e100;
 
 /// A real number at some precision.
-pub(super) trait Real:
+pub(super) trait SolverNumber:
     Copy
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -46,7 +46,7 @@ pub(super) trait Real:
     fn round(self) -> f64;
 }
 
-impl Real for f64 {
+impl SolverNumber for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const INSIDE: Self = 2e-15;
@@ -75,7 +75,7 @@ impl Real for f64 {
 /// The number of the cold path, where hardware does not matter.
 pub(super) type Wide = DoubleDouble<false>;
 
-impl Real for Wide {
+impl SolverNumber for Wide {
     const ZERO: Self = Self::ZERO;
     const ONE: Self = Self::new(1.0);
     const INSIDE: f64 = 1e-29;
@@ -114,7 +114,7 @@ pub(super) struct Tangent<T> {
     pub(super) q: [T; 3],
 }
 
-impl<T: Real> Tangent<T> {
+impl<T: SolverNumber> Tangent<T> {
     /// One sphere is its own minimal sphere.
     #[inline(always)]
     pub(super) fn single(index: usize) -> Self {
@@ -385,19 +385,19 @@ impl<T: Real> Tangent<T> {
 
 /// `p`, `s` and `h` of a sphere: see the head of this file.
 #[inline(always)]
-fn relative<T: Real>(sphere: &Sphere, center: DVec3, radius: f64) -> ([T; 3], T, T) {
+fn relative<T: SolverNumber>(sphere: &Sphere, center: DVec3, radius: f64) -> ([T; 3], T, T) {
     let p = difference::<T>(sphere.center(), center);
     let s = T::from_difference(sphere.radius(), radius);
     (p, s, (dot(&p, &p) - s * s) * T::from(0.5))
 }
 
 #[inline(always)]
-fn times<T: Real>(v: [T; 3], factor: T) -> [T; 3] {
+fn times<T: SolverNumber>(v: [T; 3], factor: T) -> [T; 3] {
     [v[0] * factor, v[1] * factor, v[2] * factor]
 }
 
 #[inline(always)]
-fn combine<T: Real>(f: [T; 3], [a, b, c]: &[[T; 3]; 3]) -> [T; 3] {
+fn combine<T: SolverNumber>(f: [T; 3], [a, b, c]: &[[T; 3]; 3]) -> [T; 3] {
     [
         f[0] * a[0] + f[1] * b[0] + f[2] * c[0],
         f[0] * a[1] + f[1] * b[1] + f[2] * c[1],

@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 use rt_math::Roots;
 use rt_math::exact::{U, power_of_two};
 
-use super::finish::{Place, SphereCrossing, rounded};
+use super::finish::{SphereCrossing, WhichRoot, rounded};
 use super::{Sphere, exact};
 use crate::Ray;
 use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds};
@@ -87,8 +87,8 @@ pub(super) fn roots_kernel<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, r
         FilterVerdict::Misses => Roots::None,
         FilterVerdict::Crosses(crossing) => {
             let roots = crossing.approximation();
-            let near = rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, Place::Near);
-            let far = rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, Place::Far);
+            let near = rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, WhichRoot::Near);
+            let far = rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, WhichRoot::Far);
             match (near, far) {
                 (Some(near), Some(far)) => Roots::Two(near, far),
                 _ => exact::roots(sphere, ray),

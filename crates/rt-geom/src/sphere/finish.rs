@@ -34,7 +34,7 @@ pub(super) struct SphereCrossing {
 
 /// One of the two places where a line crosses a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Place {
+pub(super) enum WhichRoot {
     /// Where it enters.
     Near,
     /// Where it leaves.
@@ -69,11 +69,11 @@ impl SphereCrossing {
     /// The signs of the coefficients tell: of the roots' product c / a and, if it is positive, of their sum -2 b / a.
     /// `docs/numerics.md` shows that the sign of b is then certain.
     #[inline(always)]
-    pub(super) fn first_ahead(&self, start: f64) -> Option<Option<Place>> {
+    pub(super) fn first_ahead(&self, start: f64) -> Option<Option<WhichRoot>> {
         let certain = start.to_bits() == 0 && self.c.abs() > 14.0 * U * self.squares;
         let first = match (self.c < 0.0, self.b < 0.0) {
-            (true, _) => Some(Place::Far),
-            (false, true) => Some(Place::Near),
+            (true, _) => Some(WhichRoot::Far),
+            (false, true) => Some(WhichRoot::Near),
             (false, false) => None,
         };
         certain.then_some(first)
@@ -81,14 +81,14 @@ impl SphereCrossing {
 
     /// Which root, if any, is the first not before the start of a range; `None` if that is not certain.
     #[inline(always)]
-    pub(super) fn first(&self, start: f64, roots: &Approximation) -> Option<Option<Place>> {
+    pub(super) fn first(&self, start: f64, roots: &Approximation) -> Option<Option<WhichRoot>> {
         let Approximation { near, far, error, .. } = *roots;
         if let Some(first) = self.first_ahead(start) {
             Some(first)
         } else if near - error > start {
-            Some(Some(Place::Near))
+            Some(Some(WhichRoot::Near))
         } else if near + error < start && far - error > start {
-            Some(Some(Place::Far))
+            Some(Some(WhichRoot::Far))
         } else if far + error < start {
             Some(None)
         } else {
@@ -105,7 +105,7 @@ pub(super) fn rounded<const FMA: bool, S: Simd>(
     ray: &Ray,
     crossing: &SphereCrossing,
     roots: &Approximation,
-    place: Place,
+    place: WhichRoot,
 ) -> Option<f64> {
     let (t, step, error) = refined::<FMA, S>(simd, sphere, ray, crossing, roots, place)?;
     round_if_certain(t, step, error)
@@ -120,12 +120,12 @@ fn refined<const FMA: bool, S: Simd>(
     ray: &Ray,
     crossing: &SphereCrossing,
     roots: &Approximation,
-    place: Place,
+    place: WhichRoot,
 ) -> Option<(f64, f64, f64)> {
     let inverse_root = roots.inverse_root;
     let (t, half_inverse) = match place {
-        Place::Near => (roots.near, 0.5 * inverse_root),
-        Place::Far => (roots.far, -0.5 * inverse_root),
+        WhichRoot::Near => (roots.near, 0.5 * inverse_root),
+        WhichRoot::Far => (roots.far, -0.5 * inverse_root),
     };
     // How far off 2 sqrt(Delta) is, relatively.
     let slack = crossing.error * inverse_root * inverse_root;
@@ -243,7 +243,7 @@ mod tests {
             let ray = Ray::new(center + off * side + along * direction, direction).unwrap();
             let FilterVerdict::Crosses(crossing) = filter::<false>(&sphere, &ray) else { continue };
             let (roots, truth) = (crossing.approximation(), Equation::new(&ray, &sphere));
-            for place in [Place::Near, Place::Far] {
+            for place in [WhichRoot::Near, WhichRoot::Far] {
                 let simd = Fallback::new();
                 let Some((t, step, error)) = refined::<false, _>(simd, &sphere, &ray, &crossing, &roots, place) else {
                     continue;
@@ -253,7 +253,7 @@ mod tests {
                 let bound = exact(2.0 * RESIDUAL_ERROR * crossing.squares);
                 assert_eq!(off.abs().cmp(&bound), Ordering::Less, "residual: {sphere:?} {ray:?}");
                 let (root, error) = (&exact(t) + &exact(step), exact(error));
-                let compare = |x: &Exact| truth.compare(place == Place::Far, x);
+                let compare = |x: &Exact| truth.compare(place == WhichRoot::Far, x);
                 assert_eq!(compare(&(&root - &error)), Ordering::Greater, "step: {sphere:?} {ray:?}");
                 assert_eq!(compare(&(&root + &error)), Ordering::Less, "step: {sphere:?} {ray:?}");
             }

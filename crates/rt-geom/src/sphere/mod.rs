@@ -48,6 +48,7 @@ pub struct Sphere {
 
 impl Sphere {
     /// Returns the sphere, or `None` if a number is not finite or the radius is negative. Radius 0 is allowed.
+    #[must_use]
     pub fn new(center: DVec3, radius: f64) -> Option<Self> {
         let valid = center.is_finite() && radius.is_finite() && radius >= 0.0;
         valid.then_some(Self { center, radius })
@@ -55,12 +56,14 @@ impl Sphere {
 
     /// The center; finite.
     #[inline]
+    #[must_use]
     pub fn center(&self) -> DVec3 {
         self.center
     }
 
     /// The radius; finite and not negative.
     #[inline]
+    #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -85,12 +88,14 @@ impl Sphere {
     /// assert_eq!(sphere.closest(&ray, 0.0..4.0), None);
     /// ```
     #[inline]
+    #[must_use]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
         filter::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
+    #[must_use]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
         self.meets::<false>(&PreparedRay::new(ray, within))
     }
@@ -99,6 +104,7 @@ impl Sphere {
     ///
     /// The number of roots is exact, a tangent line has one, and each root is correctly rounded: two that differ by
     /// less than the spacing of doubles come out equal. Never `Roots::All`.
+    #[must_use]
     pub fn roots(&self, ray: &Ray) -> Roots {
         filter::roots(self, ray)
     }
@@ -113,6 +119,7 @@ impl Sphere {
     /// assert_eq!(sphere.side(DVec3::new(1.0, 2.0, 2.0)), Side::On);
     /// assert_eq!(sphere.side(DVec3::new(1.0, 2.0, 2f64.next_up())), Side::Outside);
     /// ```
+    #[must_use]
     pub fn side(&self, point: DVec3) -> Side {
         let w = point - self.center;
         let (square, radius_square) = (w.length_squared(), self.radius * self.radius);
@@ -132,6 +139,7 @@ impl Sphere {
     /// Within `4.6 * 2^-53` of the exact unit vector through the point given, in Euclidean length, for any scale (proved);
     /// a point that is off the surface by `e` turns it by `e / radius` more. At the center itself, so for
     /// radius 0, there is no normal: the answer is NaN.
+    #[must_use]
     pub fn normal(&self, point: DVec3) -> DVec3 {
         let w = point - self.center;
         let w = if w.is_finite() { w } else { 0.5 * point - 0.5 * self.center };

@@ -19,7 +19,7 @@ use crate::stage::{Stage, decided};
 const UNDERFLOW: f64 = power_of_two(-500);
 
 /// Cold stages need no FMA.
-type Number = DoubleDouble<false>;
+type ColdDoubleDouble = DoubleDouble<false>;
 
 /// Returns the hit's `t` if it is in the range; slow path, always decides.
 #[cold]
@@ -120,15 +120,16 @@ fn verdict(signs: [Ordering; 4]) -> Option<Verdict> {
 
 /// The signs of the volumes and of their sum, in double-double, if all are certain.
 fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> {
-    let [a, b, c] = triangle.vertices.map(|vertex| difference::<Number>(vertex, ray.origin()));
-    let d = ray.direction().to_array().map(Number::new);
+    let [a, b, c] = triangle.vertices.map(|vertex| difference::<ColdDoubleDouble>(vertex, ray.origin()));
+    let d = ray.direction().to_array().map(ColdDoubleDouble::new);
     let most = |i: usize| larger(a[i].high().abs(), larger(b[i].high().abs(), c[i].high().abs()));
     let size = most(0) + most(1) + most(2);
     let error = 32.0 * U * U * ray.reach() * size * size + UNDERFLOW;
     let beside_a = cross(&d, &a);
     let (u, v, w) = (dot(&cross(&d, &b), &c), -dot(&beside_a, &c), dot(&beside_a, &b));
     // False for NaN.
-    let certain = |x: Number, bound: f64| (size < FARTHEST && x.high().abs() > bound).then(|| x.high().total_cmp(&0.0));
+    let certain =
+        |x: ColdDoubleDouble, bound: f64| (size < FARTHEST && x.high().abs() > bound).then(|| x.high().total_cmp(&0.0));
     let sum = certain(u + v + w, 4.0 * error)?;
     Some([certain(u, error)?, certain(v, error)?, certain(w, error)?, sum])
 }
@@ -233,19 +234,19 @@ impl Volumes for WideVolumes<'_> {
     }
 
     fn t(&self) -> f64 {
-        Integer::quotient(&self.integers().height(), &self.integers().sum())
+        VolumeInteger::quotient(&self.integers().height(), &self.integers().sum())
     }
 
     fn weights(&self) -> [f64; 3] {
         let sum = self.integers().sum();
-        [0, 1, 2].map(|i| Integer::quotient(&self.integers().volumes[i], &sum))
+        [0, 1, 2].map(|i| VolumeInteger::quotient(&self.integers().volumes[i], &sum))
     }
 }
 
 /// Limbs for what a ray and a triangle span, of degree three: multiples of 2^-3222 below 2^3079 take 101, and their
 /// quotients two more.
-type Integer = Dyadic<104>;
-type IntegerVector = [Integer; 3];
+type VolumeInteger = Dyadic<104>;
+type IntegerVector = [VolumeInteger; 3];
 
 /// The volumes in integers of any size.
 struct IntegerVolumes {
@@ -254,23 +255,23 @@ struct IntegerVolumes {
     /// `b x c`, `c x a`, `a x b`.
     planes: [IntegerVector; 3],
     /// `u`, `v`, `w`.
-    volumes: [Integer; 3],
+    volumes: [VolumeInteger; 3],
 }
 
 impl IntegerVolumes {
     fn new(triangle: &Triangle, ray: &Ray) -> Self {
-        let direction = ray.direction().to_array().map(Integer::from_f64);
-        let [a, b, c] = triangle.vertices.map(|vertex| difference::<Integer>(vertex, ray.origin()));
+        let direction = ray.direction().to_array().map(VolumeInteger::from_f64);
+        let [a, b, c] = triangle.vertices.map(|vertex| difference::<VolumeInteger>(vertex, ray.origin()));
         let planes = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
         let volumes = [0, 1, 2].map(|i| dot(&planes[i], &direction));
         Self { vertex: a, planes, volumes }
     }
 
-    fn sum(&self) -> Integer {
+    fn sum(&self) -> VolumeInteger {
         &self.volumes[0] + &self.volumes[1] + &self.volumes[2]
     }
 
-    fn height(&self) -> Integer {
+    fn height(&self) -> VolumeInteger {
         dot(&self.planes[0], &self.vertex)
     }
 }
@@ -304,8 +305,8 @@ fn fixed_is_degenerate<const N: usize, const A: usize>(triangle: &Triangle) -> O
 /// Each component is off by at most `1.01 u` of the largest.
 pub(super) fn scaled_normal(triangle: &Triangle) -> Option<DVec3> {
     let [a, b, c] = triangle.vertices;
-    let n = cross(&difference::<Number>(b, a), &difference(c, a));
-    let n = DVec3::from_array(n.map(Number::high));
+    let n = cross(&difference::<ColdDoubleDouble>(b, a), &difference(c, a));
+    let n = DVec3::from_array(n.map(ColdDoubleDouble::high));
     let largest = larger(max_abs(b - a), max_abs(c - a));
     // Here the error of the double-doubles, 32 u² largest², is below 2^-61 of the normal.
     let certain = (1e-70..=1e70).contains(&largest) && max_abs(n) >= 1e-12 * largest * largest;
@@ -331,7 +332,7 @@ fn integer_scaled_normal(triangle: &Triangle) -> Option<DVec3> {
 #[cfg(test)]
 pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
     let volumes = IntegerVolumes::new(triangle, ray);
-    Integer::quotient(&volumes.height(), &volumes.sum())
+    VolumeInteger::quotient(&volumes.height(), &volumes.sum())
 }
 
 /// The correctly rounded weights, likewise.
@@ -339,7 +340,9 @@ pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
 pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
     let volumes = IntegerVolumes::new(triangle, ray);
     let sum = volumes.sum();
-    verdict(integer_signs(&volumes))?.is_hit().then(|| [0, 1, 2].map(|i| Integer::quotient(&volumes.volumes[i], &sum)))
+    verdict(integer_signs(&volumes))?
+        .is_hit()
+        .then(|| [0, 1, 2].map(|i| VolumeInteger::quotient(&volumes.volumes[i], &sum)))
 }
 
 #[cfg(test)]

@@ -52,6 +52,7 @@ pub enum Inside {
 /// assert_eq!(inside_triangle(DVec3::Y, &triangle), Inside::Vertex);
 /// assert_eq!(inside_triangle(DVec3::ONE, &triangle), Inside::Outside);
 /// ```
+#[must_use]
 pub fn inside_triangle(point: DVec3, triangle: &Triangle) -> Inside {
     if !point.is_finite() {
         return Inside::Outside;
@@ -83,6 +84,7 @@ impl Triangle {
     /// let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
     /// assert_eq!(triangle.barycentric(DVec3::new(0.25, 0.5, 9.0)), Some([0.25, 0.25, 0.5]));
     /// ```
+    #[must_use]
     pub fn barycentric(&self, point: DVec3) -> Option<[f64; 3]> {
         if !point.is_finite() || self.is_degenerate() {
             return None;
@@ -93,6 +95,7 @@ impl Triangle {
     /// Whether a point and the three vertices lie in one plane, exactly; false if the point is not finite.
     ///
     /// Any point is coplanar with a degenerate triangle.
+    #[must_use]
     pub fn is_coplanar(&self, point: DVec3) -> bool {
         point.is_finite() && coplanar(point, self)
     }
@@ -229,12 +232,12 @@ fn double_double_weights_kernel<const FMA: bool>(point: DVec3, triangle: &Triang
 }
 
 /// Limbs for the turns, of degree four: multiples of 2^-4296 below 2^4105 take 134, and their quotients two more.
-type Integer = Dyadic<136>;
+type TurnInteger = Dyadic<136>;
 
-fn integer_turns(point: DVec3, triangle: &Triangle) -> ([Integer; 3], [Integer; 3]) {
+fn integer_turns(point: DVec3, triangle: &Triangle) -> ([TurnInteger; 3], [TurnInteger; 3]) {
     let [a, b, c] = triangle.vertices();
-    let n = cross(&difference::<Integer>(b, a), &difference(c, a));
-    let turn = |from, to| dot(&n, &cross(&difference::<Integer>(to, from), &difference(point, from)));
+    let n = cross(&difference::<TurnInteger>(b, a), &difference(c, a));
+    let turn = |from, to| dot(&n, &cross(&difference::<TurnInteger>(to, from), &difference(point, from)));
     ([turn(b, c), turn(c, a), turn(a, b)], n)
 }
 
@@ -249,7 +252,7 @@ fn integer_signs(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
 fn integer_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
     let (turns, n) = integer_turns(point, triangle);
     let square = dot(&n, &n);
-    turns.map(|turn| Integer::quotient(&turn, &square))
+    turns.map(|turn| TurnInteger::quotient(&turn, &square))
 }
 
 /// The sign of the volume that the point spans with the triangle, compared with zero.
@@ -286,7 +289,7 @@ fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(point: DVec3, 
 #[inline(never)]
 fn integer_coplanar(point: DVec3, triangle: &Triangle) -> bool {
     let [a, b, c] = triangle.vertices();
-    let n = cross(&difference::<Integer>(b, a), &difference(c, a));
+    let n = cross(&difference::<TurnInteger>(b, a), &difference(c, a));
     dot(&n, &difference(point, a)).sign() == Ordering::Equal
 }
 

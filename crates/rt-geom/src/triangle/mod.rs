@@ -54,6 +54,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Whether it is a hit: in the interior, an edge or a vertex.
+    #[must_use]
     pub fn is_hit(self) -> bool {
         matches!(self, Self::Interior | Self::Edge(_) | Self::Vertex(_))
     }
@@ -71,6 +72,7 @@ pub struct Triangle {
 impl Triangle {
     /// Returns the triangle, or `None` if a coordinate is not finite. A triangle without area is allowed, and
     /// nothing hits it.
+    #[must_use]
     pub fn new(a: DVec3, b: DVec3, c: DVec3) -> Option<Self> {
         let valid = a.is_finite() && b.is_finite() && c.is_finite();
         let (e, f) = (b - a, c - a);
@@ -82,6 +84,7 @@ impl Triangle {
 
     /// The three vertices, as given; finite.
     #[inline]
+    #[must_use]
     pub fn vertices(&self) -> [DVec3; 3] {
         self.vertices
     }
@@ -106,12 +109,14 @@ impl Triangle {
     /// assert_eq!(triangle.closest(&ray, 0.0..3.0), None);
     /// ```
     #[inline]
+    #[must_use]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<f64> {
         filter::closest(self, ray, within.start, within.end)
     }
 
     /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
     #[inline]
+    #[must_use]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
         self.meets::<false>(&PreparedRay::new(ray, within))
     }
@@ -131,6 +136,7 @@ impl Triangle {
     /// assert_eq!(down(0.0, 1.0), Verdict::Vertex(2));
     /// assert_eq!(down(0.5, 0.5f64.next_up()), Verdict::Miss);
     /// ```
+    #[must_use]
     pub fn verdict(&self, ray: &Ray) -> Verdict {
         let line = match filter::<false>(self, ray) {
             FilterVerdict::Crosses(_) => Verdict::Interior,
@@ -163,6 +169,7 @@ impl Triangle {
     /// assert!(halves.iter().all(|half| half.any(&ray, 0.0..f64::INFINITY)));
     /// assert_eq!(halves.iter().filter(|half| half.crosses(&ray)).count(), 1);
     /// ```
+    #[must_use]
     pub fn crosses(&self, ray: &Ray) -> bool {
         match filter::<false>(self, ray) {
             FilterVerdict::Misses => false,
@@ -179,12 +186,14 @@ impl Triangle {
     ///
     /// Within `4.6 * 2^-53` of the exact one in Euclidean length, slivers and all scales included (proved in
     /// `docs/numerics.md`, section 6).
+    #[must_use]
     pub fn normal(&self) -> Option<DVec3> {
         let n = exact::scaled_normal(self)?;
         Some(n / n.length())
     }
 
     /// Whether the triangle has no area: its vertices lie on a line. Exact.
+    #[must_use]
     pub fn is_degenerate(&self) -> bool {
         let [a, b, c] = self.vertices;
         let area = max_abs((b - a).cross(c - a));
@@ -197,12 +206,14 @@ impl Triangle {
     ///
     /// The weights lie in 0..=1, and their sum is 1 but for the rounding of each. A weight is zero exactly on the
     /// opposite edge, or where it underflows.
+    #[must_use]
     pub fn hit_barycentric(&self, ray: &Ray) -> Option<[f64; 3]> {
         filter::weights(self, ray)
     }
 
     /// Returns `t` and the weights of the three vertices at the hit, if it is in the range: what [`Self::closest`] and
     /// [`Self::hit_barycentric`] give, in less time than both.
+    #[must_use]
     pub fn closest_with_barycentric(&self, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
         filter::closest_with_weights(self, ray, within.start, within.end)
     }

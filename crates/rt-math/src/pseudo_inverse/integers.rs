@@ -42,8 +42,6 @@ fn is_narrow(m: &DMat3) -> bool {
     used().max().unwrap_or(0) - used().min().unwrap_or(0) <= NARROW
 }
 
-type Vector<const LIMBS: usize> = [Dyadic<LIMBS>; 3];
-
 fn pseudo_inverse_sized<const LIMBS: usize>(m: &DMat3) -> PseudoInverse {
     let (rows, denominator, rank) = quotients::<LIMBS>(m);
     let row = |k: usize| DVec3::from_array([0, 1, 2].map(|j| divided(&rows[k][j], &denominator)));
@@ -56,7 +54,7 @@ fn row_sums_sized<const LIMBS: usize>(m: &DMat3) -> DVec3 {
 }
 
 /// The rows of the pseudo-inverse times a common denominator, and the rank; all zero for rank 0.
-fn quotients<const LIMBS: usize>(m: &DMat3) -> ([Vector<LIMBS>; 3], Dyadic<LIMBS>, usize) {
+fn quotients<const LIMBS: usize>(m: &DMat3) -> ([[Dyadic<LIMBS>; 3]; 3], Dyadic<LIMBS>, usize) {
     let a = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(Dyadic::<LIMBS>::from_f64));
     let c = [cross(&a[1], &a[2]), cross(&a[2], &a[0]), cross(&a[0], &a[1])];
     let determinant = dot(&a[0], &c[0]);
