@@ -11,7 +11,7 @@ use crate::Triangle;
 /// Each coefficient is correctly rounded: the three sums have one denominator, so each is one exact quotient.
 ///
 /// A plane through the origin has no such form. The answer is then the least-squares solution, which is another
-/// plane: nothing in the answer itself tells. The intersection of rays and triangles does not use this form.
+/// plane: nothing in the answer itself shows it. The intersection of rays and triangles does not use this form.
 ///
 /// ```
 /// use glam::DVec3;

@@ -11,7 +11,7 @@ use rt_math::exact::power_of_two;
 /// The direction need not be a unit vector: `t` counts in units of it, and nothing normalises it behind the
 /// caller's back, because that would move the ray.
 // In an order in which no pair of coordinates straddles two pairs that are written together: reading such a pair soon
-// after would wait for the memory.
+// after stalls until the stores have reached the cache.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Ray {

@@ -319,7 +319,7 @@ impl Bracket {
             let (dx, dy, dz) = (x - to.x, y - to.y, z - to.z);
             most = most.max((dx * dx + dy * dy + dz * dz).sqrt() + sphere.radius());
         }
-        // (Which it is cannot be foretold: no branch.)
+        // (Which it is cannot be predicted: no branch.)
         let least = f64x8::splat(simd, most.reduce_min());
         let best = most.simd_le(least).to_bitmask().trailing_zeros();
         let pick = |bit: u32, nearest: f64, other: f64| if best >> bit & 1 == 1 { other } else { nearest };

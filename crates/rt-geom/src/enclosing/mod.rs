@@ -230,7 +230,7 @@ fn finish(spheres: &[Sphere], bracket: &Bracket, lower_bound: f64, support: &[us
 }
 
 /// The places in ascending order, the first one repeated, and how many there are. (A network of minima and maxima: the
-/// order cannot be foretold, so a branch would cost more.)
+/// order cannot be predicted, so a branch would cost more.)
 fn sorted(support: &[usize]) -> ([usize; 4], usize) {
     let at = |place: usize| support.get(place).copied().unwrap_or(usize::MAX);
     let order = |a: usize, b: usize| (a.min(b), a.max(b));

@@ -11,7 +11,7 @@ use crate::Sphere;
 pub(super) const LANES: usize = 8;
 
 /// Turns the minimal sphere of some of the spheres in `lanes` into that of all of them: adds the sphere that sticks out
-/// farthest, until none does. `place` tells from a lane the place in `spheres`.
+/// farthest, until none does. `place` maps a lane to the place in `spheres`.
 #[inline(never)]
 pub(super) fn pivot<S: Simd, const VECTORS: usize>(
     simd: S,

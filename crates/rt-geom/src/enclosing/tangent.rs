@@ -157,7 +157,7 @@ impl<T: SolverNumber> Tangent<T> {
     /// Adds a sphere without solving.
     #[inline(always)]
     fn push(&mut self, index: usize, spheres: &[Sphere]) {
-        // (Without a branch: which is larger cannot be foretold.)
+        // (Without a branch: which is larger cannot be predicted.)
         let both = [self.index[0], index];
         let larger = usize::from(spheres[index].radius() > spheres[both[0]].radius());
         self.index[self.len] = both[1 - larger];
@@ -253,7 +253,7 @@ impl<T: SolverNumber> Tangent<T> {
     /// The place of the most negative coordinate, other than that of the sphere `keep`; `None` if none is negative.
     #[inline(always)]
     fn most_negative(&self, keep: usize) -> Option<usize> {
-        // Those beyond `len` are zero. (Without a branch: which it is cannot be foretold.)
+        // Those beyond `len` are zero. (Without a branch: which it is cannot be predicted.)
         let mut least = T::ZERO;
         let mut found = usize::MAX;
         for place in 0..4 {

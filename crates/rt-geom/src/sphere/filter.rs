@@ -20,7 +20,7 @@ const LARGEST: f64 = power_of_two(600);
 /// The error of `Delta` in the filter, relative to `d.d (w.w + r²)`, as `docs/numerics.md`, section 5, has it.
 const ERROR: f64 = 17.0 * U;
 
-/// The filter: tells in plain doubles whether the line crosses the surface, where that is certain.
+/// The filter: decides in plain doubles whether the line crosses the surface, where that is certain.
 #[inline(always)]
 pub(super) fn filter<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> FilterVerdict<SphereCrossing> {
     let d = ray.direction();

@@ -93,7 +93,7 @@ impl Sphere {
         filter::closest(self, ray, within.start, within.end)
     }
 
-    /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, found sooner.
+    /// Whether the ray meets the surface in the range: the same as `closest(..).is_some()`, at less cost.
     #[inline]
     #[must_use]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {

@@ -216,30 +216,25 @@ impl WideVolumes<'_> {
 
 impl Volumes for WideVolumes<'_> {
     fn signs(&self) -> [Ordering; 4] {
-        if let Some(signs) = double_double_signs(self.triangle, self.ray) {
-            decided(Stage::DoubleDouble);
-            return signs;
-        }
-        let [u, v, w] = &self.integers().volumes;
-        [u.sign(), v.sign(), w.sign(), self.integers().sum().sign()]
+        let Some(signs) = double_double_signs(self.triangle, self.ray) else { return self.integers().signs() };
+        decided(Stage::DoubleDouble);
+        signs
     }
 
     fn turned_signs(&self) -> [Ordering; 3] {
-        let IntegerVolumes { planes, volumes, .. } = self.integers();
-        [0, 1, 2].map(|i| planes[i].iter().fold(volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
+        self.integers().turned_signs()
     }
 
     fn height_sign(&self) -> Ordering {
-        self.integers().height().sign()
+        self.integers().height_sign()
     }
 
     fn t(&self) -> f64 {
-        VolumeInteger::quotient(&self.integers().height(), &self.integers().sum())
+        self.integers().t()
     }
 
     fn weights(&self) -> [f64; 3] {
-        let sum = self.integers().sum();
-        [0, 1, 2].map(|i| VolumeInteger::quotient(&self.integers().volumes[i], &sum))
+        self.integers().weights()
     }
 }
 
@@ -273,6 +268,31 @@ impl IntegerVolumes {
 
     fn height(&self) -> VolumeInteger {
         dot(&self.planes[0], &self.vertex)
+    }
+}
+
+impl Volumes for IntegerVolumes {
+    fn signs(&self) -> [Ordering; 4] {
+        let [u, v, w] = &self.volumes;
+        [u.sign(), v.sign(), w.sign(), self.sum().sign()]
+    }
+
+    fn turned_signs(&self) -> [Ordering; 3] {
+        [0, 1, 2]
+            .map(|i| self.planes[i].iter().fold(self.volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
+    }
+
+    fn height_sign(&self) -> Ordering {
+        self.height().sign()
+    }
+
+    fn t(&self) -> f64 {
+        VolumeInteger::quotient(&self.height(), &self.sum())
+    }
+
+    fn weights(&self) -> [f64; 3] {
+        let sum = self.sum();
+        [0, 1, 2].map(|i| VolumeInteger::quotient(&self.volumes[i], &sum))
     }
 }
 
@@ -331,24 +351,14 @@ fn integer_scaled_normal(triangle: &Triangle) -> Option<DVec3> {
 /// The correctly rounded `t`, by integers of any size alone: the oracle of the other stages.
 #[cfg(test)]
 pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
-    let volumes = IntegerVolumes::new(triangle, ray);
-    VolumeInteger::quotient(&volumes.height(), &volumes.sum())
+    IntegerVolumes::new(triangle, ray).t()
 }
 
 /// The correctly rounded weights, likewise.
 #[cfg(test)]
 pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
     let volumes = IntegerVolumes::new(triangle, ray);
-    let sum = volumes.sum();
-    verdict(integer_signs(&volumes))?
-        .is_hit()
-        .then(|| [0, 1, 2].map(|i| VolumeInteger::quotient(&volumes.volumes[i], &sum)))
-}
-
-#[cfg(test)]
-fn integer_signs(volumes: &IntegerVolumes) -> [Ordering; 4] {
-    let [u, v, w] = &volumes.volumes;
-    [u.sign(), v.sign(), w.sign(), volumes.sum().sign()]
+    verdict(volumes.signs())?.is_hit().then(|| volumes.weights())
 }
 
 #[cfg(test)]
@@ -393,7 +403,7 @@ mod tests {
     impl Stages {
         fn count(&mut self, triangle: &Triangle, ray: &Ray) {
             let exact = IntegerVolumes::new(triangle, ray);
-            let expected = verdict(integer_signs(&exact)).unwrap_or(Verdict::Parallel);
+            let expected = verdict(exact.signs()).unwrap_or(Verdict::Parallel);
             match filter::<false>(triangle, ray) {
                 FilterVerdict::Misses => {
                     self.filter += 1;
@@ -429,9 +439,9 @@ mod tests {
                         self.integers += 1;
                         return;
                     };
-                    assert_eq!(signs, integer_signs(&exact), "{triangle:?} {ray:?}");
+                    assert_eq!(signs, exact.signs(), "{triangle:?} {ray:?}");
                     if let Some(signs) = double_double_signs(triangle, ray) {
-                        assert_eq!(signs, integer_signs(&exact), "{triangle:?} {ray:?}");
+                        assert_eq!(signs, exact.signs(), "{triangle:?} {ray:?}");
                     }
                 }
             }

@@ -14,7 +14,7 @@ use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds, large
 /// as `docs/numerics.md`, section 6, has them.
 const ERROR: f64 = 18.0 * U;
 
-/// The filter: tells in plain doubles whether the line meets the interior or passes beside the triangle, where that
+/// The filter: decides in plain doubles whether the line meets the interior or passes beside the triangle, where that
 /// is certain.
 ///
 /// Source: T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997; the bounds are ours.
@@ -38,7 +38,7 @@ pub(super) fn filter<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> FilterV
     let q = cross::<FMA>(s, e);
     let w = sign * dot::<FMA>(ray.direction(), q);
     let u = (sum - v) - w;
-    // All three at once: one branch to foretell.
+    // All three at once: one branch to predict.
     let least = smaller(v, smaller(u, w));
     // False for NaN.
     if smaller(sum, least.abs()) > error {

@@ -114,7 +114,7 @@ impl Triangle {
         filter::closest(self, ray, within.start, within.end)
     }
 
-    /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, found sooner.
+    /// Whether the ray meets the triangle in the range: the same as `closest(..).is_some()`, at less cost.
     #[inline]
     #[must_use]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {

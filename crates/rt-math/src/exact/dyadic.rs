@@ -103,7 +103,8 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     }
 
     /// The magnitude.
-    fn abs(mut self) -> Self {
+    #[must_use]
+    pub fn abs(mut self) -> Self {
         self.negative = false;
         self
     }

@@ -160,7 +160,7 @@ pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
         return PseudoInverse { matrix: DMat3::ZERO, rank: 0 };
     }
     let exact = pseudo_inverse(m);
-    if rtol < SMALLEST { exact } else { truncated::truncated(&m, rtol, exact) }
+    if rtol < SMALLEST { exact } else { truncated::truncated(&m, rtol, exact, pseudo_inverse) }
 }
 
 #[cfg(test)]

@@ -8,11 +8,16 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{PseudoInverse, pseudo_inverse};
-use crate::exact::{mantissa_and_exponent, power_of_two, scale, two_prod};
+use super::PseudoInverse;
+use crate::exact::{mantissa_and_exponent, scale, two_prod};
 
-/// The pseudo-inverse of the finite `m` with a tolerance, given the exact one.
-pub(super) fn truncated(m: &DMat3, rtol: f64, exact: PseudoInverse) -> PseudoInverse {
+/// The pseudo-inverse of the finite `m` with a tolerance, given the exact one and the function that finds such.
+pub(super) fn truncated(
+    m: &DMat3,
+    rtol: f64,
+    exact: PseudoInverse,
+    pseudo_inverse: fn(DMat3) -> PseudoInverse,
+) -> PseudoInverse {
     // s_r / s_1 is at least 1 / (|A| |A+|), with Frobenius norms; the margin is far above the error of the norms, unless
     // squares underflow, which the lower limit excludes.
     const MARGIN: f64 = 1.0 - 1e-6;
@@ -31,7 +36,7 @@ pub(super) fn truncated(m: &DMat3, rtol: f64, exact: PseudoInverse) -> PseudoInv
     let threshold = rtol * first.value;
     let rank = if second <= threshold {
         1
-    } else if exact.rank == 3 && smallest(&a) <= threshold {
+    } else if exact.rank == 3 && smallest(pseudo_inverse(a)) <= threshold {
         2
     } else {
         return exact;
@@ -74,7 +79,7 @@ impl Singular {
         }
         let length = g.map(DVec3::length);
         let k = (0..3).fold(0, |best, k| if length[k] > length[best] { k } else { best });
-        Self { value: length[k] * power_of_two(-shift), left: g[k] / length[k], right: v[k] }
+        Self { value: scale(length[k], -shift), left: g[k] / length[k], right: v[k] }
     }
 }
 
@@ -109,9 +114,8 @@ fn cofactors(m: &DMat3) -> DMat3 {
     DMat3::from_cols(cross(m.y_axis, m.z_axis), cross(m.z_axis, m.x_axis), cross(m.x_axis, m.y_axis))
 }
 
-/// The smallest singular value; 0 if it is below about 2^-1022.
-fn smallest(m: &DMat3) -> f64 {
-    let inverse = pseudo_inverse(*m);
+/// The smallest singular value of a matrix with this inverse; 0 if it is below about 2^-1022.
+fn smallest(inverse: PseudoInverse) -> f64 {
     let regular = inverse.rank == 3 && inverse.matrix.is_finite();
     if regular { 1.0 / Singular::largest(&inverse.matrix).value } else { 0.0 }
 }
