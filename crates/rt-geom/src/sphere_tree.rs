@@ -14,13 +14,13 @@
 
 use std::ops::Range;
 
+use rt_math::exact::{power_of_two, power_of_two_near_inverse};
 use rt_math::fma_dispatch;
 
 use crate::enclosing::nodes::{Node as Part, enclosing_nodes};
 use crate::hilbert;
 use crate::leaf::{Any, Closest, Leaves, Query};
 use crate::ray::{PreparedRay, is_open, larger, max_abs};
-use crate::sphere::power_of_two_near_inverse;
 use crate::{Hit, Ray, Shape, Sphere, Triangle, Visits, enclosing_sphere};
 
 /// The tree by index halves, over spheres and triangles (spheres first), with the plain loop's answers bit for bit.
@@ -71,10 +71,10 @@ const PAIR_COST: usize = 5;
 const MARGIN: f64 = 16.0 * f64::EPSILON;
 
 /// The rounding errors of numbers that underflow, and of `t`: `2^-100`.
-const UNDERFLOW: f64 = f64::from_bits((1023 - 100) << 52);
+const UNDERFLOW: f64 = power_of_two(-100);
 
 /// A unit of `t` must be as long as this or its reciprocal in scaled coordinates, or every `t` counts: `2^960`.
-const LONGEST: f64 = f64::from_bits((1023 + 960) << 52);
+const LONGEST: f64 = power_of_two(960);
 
 /// The depth of a tree of fewer than 2^32 primitives.
 const DEPTH: usize = 32;

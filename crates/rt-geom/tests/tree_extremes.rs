@@ -207,7 +207,7 @@ fn compare(seed: u64, rays: usize) -> Counts {
         let rays: Vec<Ray> = (0..8).filter_map(|_| ray(&mut rng, &scene)).collect();
         counts.rays += rays.len();
         let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
-        let level = ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"][turn % 6];
+        let level = ["sse2", "avx2", "avx512", "neon"][turn % 4];
         let tree = tree.clone().with_simd(level).unwrap_or(tree);
         let sphere_tree = [SphereTree::new, SphereTree::sorted][turn % 2];
         let sphere_tree = sphere_tree(scene.spheres.clone(), scene.triangles.clone());

@@ -16,12 +16,13 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, dispatch, f32x8, prelude::*, u32x8};
+use fearless_simd::{Level, Simd, f32x8, prelude::*, u32x8};
 use glam::Vec4;
 use rayon::prelude::*;
 
 use super::node::{Block, Blocked, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH};
 use super::rank::{self, ascending};
+use crate::simd::dispatch;
 
 /// The tree while it grows: first over the spheres, then over the triangles.
 #[derive(Default)]

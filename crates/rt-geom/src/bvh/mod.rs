@@ -12,10 +12,11 @@ mod walk;
 
 use std::ops::Range;
 
-use fearless_simd::{Fallback, Level, dispatch};
+use fearless_simd::Level;
 
 use crate::leaf::{Any, Closest, Leaves, Query};
 use crate::ray::is_open;
+use crate::simd::dispatch;
 use crate::{Hit, Ray, Shape, Sphere, Triangle, Visits, enclosing_sphere};
 use batch::fly;
 use build::Trunk;
@@ -83,24 +84,23 @@ impl Bvh {
         self.leaves.shape(index)
     }
 
-    /// The same tree with another instruction set: `"scalar"`, `"sse2"`, `"sse4.2"`, `"avx2"`, `"avx512"` or `"neon"`;
-    /// `None` if this CPU lacks it. For tests and benches: every set gives the same answers.
+    /// The same tree with another instruction set: `"sse2"`, `"avx2"`, `"avx512"` or `"neon"`; `None` if this CPU lacks it.
+    /// For tests and benches: every set gives the same answers.
     #[doc(hidden)]
+    #[must_use]
     pub fn with_simd(mut self, name: &str) -> Option<Self> {
         let best = Level::new();
-        #[cfg(target_arch = "x86_64")]
-        let level = match name {
-            "sse2" => best.as_sse2().map(Level::Sse2),
-            "sse4.2" => best.as_sse4_2().map(Level::Sse4_2),
-            "avx2" => best.as_avx2().map(Level::Avx2),
-            "avx512" => best.as_avx512().map(Level::Avx512),
-            _ => None,
+        self.level = match name {
+            #[cfg(target_arch = "x86_64")]
+            "sse2" => Level::Sse2(best.as_sse2()?),
+            #[cfg(target_arch = "x86_64")]
+            "avx2" => Level::Avx2(best.as_avx2()?),
+            #[cfg(target_arch = "x86_64")]
+            "avx512" => Level::Avx512(best.as_avx512()?),
+            #[cfg(target_arch = "aarch64")]
+            "neon" => Level::Neon(best.as_neon()?),
+            _ => return None,
         };
-        #[cfg(target_arch = "aarch64")]
-        let level = best.as_neon().filter(|_| name == "neon").map(Level::Neon);
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        let level = None;
-        self.level = if name == "scalar" { Level::Fallback(Fallback::new()) } else { level? };
         Some(self)
     }
 

@@ -1,7 +1,9 @@
 //! The order of a few numbers, found by counting for each how many are less: sixteen at a time, and without a branch on
 //! what cannot be foretold. For so few that is several times faster than sorting.
 
-use fearless_simd::{Level, Simd, dispatch, prelude::*, u32x16};
+use fearless_simd::{Level, Simd, prelude::*, u32x16};
+
+use crate::simd::dispatch;
 
 /// At most so many numbers are ordered.
 pub(super) const MOST: usize = 128;
