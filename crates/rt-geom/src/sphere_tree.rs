@@ -14,7 +14,7 @@
 
 use std::ops::Range;
 
-use rt_math::exact::{power_of_two, power_of_two_near_inverse};
+use rt_math::exact::{U, power_of_two, power_of_two_near_inverse};
 use rt_math::fma_dispatch;
 
 use crate::enclosing::nodes::{Node as Part, enclosing_nodes};
@@ -67,8 +67,8 @@ struct Child {
 const PAIR_COST: usize = 5;
 
 /// The rounding errors of a sphere's test, relative to its radius and its distance from the ray's origin:
-/// `docs/numerics.md`, section 12.
-const MARGIN: f64 = 16.0 * f64::EPSILON;
+/// `docs/numerics.md`, lemma 9.8.
+const MARGIN: f64 = 64.0 * U;
 
 /// The rounding errors of numbers that underflow, and of `t`: `2^-100`.
 const UNDERFLOW: f64 = power_of_two(-100);
