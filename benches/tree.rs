@@ -1,4 +1,4 @@
-//! The tree beside the plain loop and the report's tree of index halves: one ray at a time, and batches.
+//! The fast tree beside the plain loop and the report's tree, as listed and sorted: one ray at a time, and batches.
 
 use std::hint::black_box;
 
@@ -47,10 +47,14 @@ fn closest(c: &mut Criterion) {
         group.bench_function(format!("batch/{name}"), |b| {
             b.iter(|| tree.closest_batch(black_box(&rays), AHEAD, &mut hits));
         });
+        let sorted = SphereTree::sorted(spheres.clone(), vec![]);
+        group.bench_function(format!("sphere_tree_sorted/{name}"), |b| {
+            b.iter(|| rays.iter().filter_map(|ray| sorted.closest(black_box(ray), AHEAD)).count());
+        });
         if n <= 1_000 {
-            let halving = SphereTree::new(spheres.clone(), vec![]);
-            group.bench_function(format!("halving/{name}"), |b| {
-                b.iter(|| rays.iter().filter_map(|ray| halving.closest(black_box(ray), AHEAD)).count());
+            let listed = SphereTree::new(spheres.clone(), vec![]);
+            group.bench_function(format!("sphere_tree_listed/{name}"), |b| {
+                b.iter(|| rays.iter().filter_map(|ray| listed.closest(black_box(ray), AHEAD)).count());
             });
             group.bench_function(format!("brute_force/{name}"), |b| {
                 let closest =
@@ -81,7 +85,10 @@ fn build(c: &mut Criterion) {
     let (spheres, _) = scene(100_000);
     let mut group = c.benchmark_group("tree_build");
     group.throughput(Throughput::Elements(100_000)).sample_size(10);
-    group.bench_function("100k_spheres", |b| b.iter(|| Bvh::new(black_box(&spheres).clone(), vec![])));
+    group.bench_function("bvh/100k_spheres", |b| b.iter(|| Bvh::new(black_box(&spheres).clone(), vec![])));
+    group.bench_function("sphere_tree_sorted/100k_spheres", |b| {
+        b.iter(|| SphereTree::sorted(black_box(&spheres).clone(), vec![]));
+    });
     group.finish();
 }
 

@@ -82,7 +82,7 @@ enum Command {
         #[arg(short, long, value_name = "FILE|-", default_value = "-", global = true)]
         out: PathBuf,
     },
-    /// Count the sphere tests that the report's tree saves in a scene
+    /// Count what a ray costs in a scene: by a loop, by the report's tree, and by the fast one
     Tests {
         /// A figure's number or a scene file
         scene: PathBuf,

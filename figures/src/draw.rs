@@ -4,19 +4,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rt_geom::SphereTree;
 use rt_io::Pixmap;
 use serde::Serialize;
 
 use crate::camera::{Size, View};
 use crate::figure::Figure;
+use crate::objects::{Method, Objects};
 use crate::options::{DrawOptions, PictureSize};
 use crate::outcome::{Failure, to_stdout};
 use crate::output::{Destination, Format, Target};
-use crate::render::{AHEAD, Renderer};
+use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::tile::{self, Label};
 use crate::{import, memory, scene_file, stderr};
@@ -139,7 +140,7 @@ fn draw(
     let load = watch.lap();
 
     // Build.
-    let renderer = pool.install(|| Renderer::new(scene));
+    let renderer = pool.install(|| Renderer::with(scene, options.tree));
     let build = watch.lap();
 
     // Trace. The target comes first, so that a folder that cannot be made is reported before the work.
@@ -209,7 +210,7 @@ fn view(scene: &Scene, size: PictureSize, samples: u32) -> Result<View, Failure>
         .ok_or_else(|| Failure::Failed("the camera cannot fit the scene: it is too large".into()))
 }
 
-/// Prints how many sphere tests the report's tree makes for the picture of a scene, beside the plain loop.
+/// Prints what a ray of the picture costs on average by each way to find what it hits: nodes visited and exact tests.
 ///
 /// `scene` is a figure's number or a scene file.
 ///
@@ -222,21 +223,22 @@ pub fn count_tests(scene: &Path, size: PictureSize) -> Result<(), Failure> {
         None => load(scene)?,
     };
     let view = view(&scene, size, 1)?;
-    let objects = scene.len() as u64;
-    let tree = SphereTree::new(scene.spheres, scene.triangles);
     let PictureSize { width, height } = size;
-    let tests: u64 = (0..height)
-        .into_par_iter()
-        .flat_map_iter(|row| (0..width).map(move |column| (column, row)))
-        .map(|(column, row)| tree.closest_counted(&view.ray(column, row), AHEAD).1.tests as u64)
-        .sum();
     let rays = u64::from(width) * u64::from(height);
-    let per_ray = tests as f64 / rays as f64;
-    let text = format!(
-        "rays              {rays}\n\
-         tests of a loop   {objects} a ray\n\
-         tests of the tree {per_ray:.1} a ray (index halves; nodes and objects)\n"
-    );
+    let mut text = format!("{} objects, {rays} rays; a ray on average:\n", scene.len());
+    text += "tree            nodes  exact tests\n";
+    for &method in Method::value_variants() {
+        let objects = Objects::new(method, scene.spheres.clone(), scene.triangles.clone());
+        let (nodes, tests) = (0..height)
+            .into_par_iter()
+            .flat_map_iter(|row| (0..width).map(move |column| (column, row)))
+            .map(|(column, row)| objects.closest_counted(&view.ray(column, row)).1)
+            .map(|visits| (visits.nodes as u64, visits.tests as u64))
+            .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        let name = method.to_possible_value().expect("every method has a name");
+        let [nodes, tests] = [nodes, tests].map(|count| count as f64 / rays as f64);
+        text += &format!("{:<10} {nodes:>10.1} {tests:>12.1}\n", name.get_name());
+    }
     to_stdout(text.as_bytes())
 }
 

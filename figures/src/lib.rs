@@ -25,6 +25,7 @@ pub mod figure;
 pub mod generate;
 pub mod import;
 mod memory;
+pub mod objects;
 mod options;
 pub mod outcome;
 pub mod output;

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
+use crate::objects::Method;
 use crate::output::Format;
 use crate::tile::Tile;
 
@@ -37,6 +38,9 @@ pub struct DrawOptions {
     /// Draw only band I of N, rows (I-1)H/N to IH/N, for `merge`
     #[arg(long, value_name = "I/N")]
     pub tile: Option<Tile>,
+    /// How the object that a ray hits is found; the picture is the same
+    #[arg(long, value_name = "METHOD", default_value = "bvh")]
+    pub tree: Method,
     /// Write no progress and no notes
     #[arg(long)]
     pub quiet: bool,

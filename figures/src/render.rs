@@ -9,11 +9,12 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rt_geom::{Bvh, Hit, Ray, Shape};
+use rt_geom::{Hit, Ray, Shape};
 use rt_shade::color::{clamp, interpolate, to_sample};
 use rt_shade::{SurfacePoint, phong_batch, texture_uv};
 
 use crate::camera::{Size, View};
+use crate::objects::{Method, Objects};
 use crate::scene::{DEFAULT_MATERIAL, Filter, Look, LookPlace, Paint, Scene};
 
 /// The size of a tile in pixels: its rays are close enough together to visit the same nodes of the tree, and many
@@ -24,15 +25,12 @@ const TILE_HEIGHT: u32 = 8;
 /// narrower.
 const TILE_RAYS: u32 = 1 << 16;
 
-/// The ray's own range: from its origin on, without end.
-pub const AHEAD: Range<f64> = 0.0..f64::INFINITY;
-
 /// A scene made ready for rays: its objects in a tree.
 #[derive(Debug)]
 pub struct Renderer {
     /// All but its spheres and triangles.
     scene: Scene,
-    tree: Bvh,
+    objects: Objects,
 }
 
 /// Rows of a picture, and how many rays they took.
@@ -47,10 +45,15 @@ pub struct Rows {
 }
 
 impl Renderer {
-    /// Builds the tree over the scene's objects.
-    pub fn new(mut scene: Scene) -> Self {
-        let tree = Bvh::new(take(&mut scene.spheres), take(&mut scene.triangles));
-        Self { scene, tree }
+    /// Builds the fast tree over the scene's objects.
+    pub fn new(scene: Scene) -> Self {
+        Self::with(scene, Method::Bvh)
+    }
+
+    /// Makes the scene's objects ready to be found in another way; the pictures are the same.
+    pub fn with(mut scene: Scene, method: Method) -> Self {
+        let objects = Objects::new(method, take(&mut scene.spheres), take(&mut scene.triangles));
+        Self { scene, objects }
     }
 
     /// Draws the given rows of a picture, samples in `0..=maxval`.
@@ -94,7 +97,7 @@ impl Renderer {
     fn seen(&self, ray: &Ray, hit: Hit) -> SurfacePoint<'_> {
         let Hit { index, t } = hit;
         let (point, direction) = (ray.at(t), ray.direction());
-        match self.tree.shape(index) {
+        match self.objects.shape(index) {
             Shape::Sphere(sphere) => {
                 // A sphere of radius 0 faces the eye.
                 let normal = if sphere.radius() > 0.0 { sphere.normal(point) } else { -direction };
@@ -173,7 +176,7 @@ impl<'a> RayTile<'a> {
         }
         self.hits.clear();
         self.hits.resize(self.rays.len(), None);
-        renderer.tree.closest_batch(&self.rays, AHEAD, &mut self.hits);
+        renderer.objects.closest_batch(&self.rays, &mut self.hits);
 
         self.seen.clear();
         let met = self.rays.iter().zip(&self.hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));

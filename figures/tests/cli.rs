@@ -346,16 +346,29 @@ fn hits_are_the_pixels_of_the_object() {
 }
 
 #[test]
-fn the_reports_tree_saves_tests_in_figure_3() {
+fn the_trees_save_tests_in_figure_3() {
     let folder = folder();
     let text = String::from_utf8(stdout(folder.path(), &["tests", "3", "--size", "64x48"])).unwrap();
-    let number = |line: &str| -> f64 {
-        let words = text.lines().find_map(|found| found.strip_prefix(line)).unwrap();
-        words.split_whitespace().next().unwrap().parse().unwrap()
+    assert!(text.starts_with("233 objects, 3072 rays"), "{text}");
+    let row = |name: &str| -> (f64, f64) {
+        let words = text.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+        let mut words = words.split_whitespace().map(|word| word.parse().unwrap());
+        (words.next().unwrap(), words.next().unwrap())
     };
-    assert_eq!(number("rays"), 64.0 * 48.0);
-    assert_eq!(number("tests of a loop"), 233.0);
-    assert!(number("tests of the tree") < 233.0 / 4.0, "{text}");
+    assert_eq!(row("loop"), (0.0, 233.0));
+    let [halves, sorted, bvh] = ["halves", "sorted", "bvh"].map(row);
+    assert!(halves.0 + halves.1 < 233.0 / 4.0 && sorted.0 + sorted.1 < 233.0 / 8.0, "{text}");
+    assert!(bvh.0 < sorted.0 && bvh.1 < sorted.1, "{text}");
+}
+
+#[test]
+fn every_tree_draws_the_same_bytes() {
+    let folder = folder();
+    for scene in ["3", "5", "6"] {
+        let [first, others @ ..] = ["bvh", "loop", "halves", "sorted"]
+            .map(|tree| stdout(folder.path(), &[scene, "--size", "48x36", "--tree", tree, "-o", "-"]));
+        assert!(others.iter().all(|other| *other == first), "figure {scene}");
+    }
 }
 
 #[test]
