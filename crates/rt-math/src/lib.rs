@@ -16,9 +16,6 @@ mod pseudo_inverse;
 mod quadratic;
 mod reflect;
 
-#[cfg(test)]
-mod oracle;
-
 pub use pseudo_inverse::{PseudoInverse, pseudo_inverse, pseudo_inverse_row_sums, pseudo_inverse_with_tolerance};
 pub use quadratic::{Roots, solve_quadratic};
 pub use reflect::{reflect, reflect_if_certain};

@@ -302,7 +302,7 @@ fn sized<const LIMBS: usize>(a: f64, b: f64, c: f64) -> Roots {
 mod tests {
     use super::*;
     use crate::exact::stage::decisions;
-    use crate::oracle::{Exact, Rng, cases, exact, is_rounding_of};
+    use oracle::{Quadratic, Random, cases, exact, is_rounding_of};
 
     /// Checks one equation against exact rational arithmetic, with and without FMA.
     fn check(a: f64, b: f64, c: f64) {
@@ -318,53 +318,22 @@ mod tests {
             assert!(same, "{input}: {found:?} without FMA, {other:?} with it");
         }
         let [a, b, c] = [a, b, c].map(exact);
-        // how the smaller or larger root compares with m
-        let compare = |larger: bool, m: &Exact| {
-            if a == Exact::ZERO {
-                // b (m - x) = b m + c
-                let order = Exact::ZERO.cmp(&(&b * m + &c));
-                return if b < Exact::ZERO { order.reverse() } else { order };
-            }
-            let (a, b, c) = if a < Exact::ZERO { (-&a, -&b, -&c) } else { (a.clone(), b.clone(), c.clone()) };
-            let value = ((&a * m) + &b) * m + &c;
-            let right_of_vertex = (exact(2.0) * a * m).cmp(&-b);
-            // a double root: only m = x makes it zero. Otherwise inside the roots the value is negative.
-            match (value.cmp(&Exact::ZERO), right_of_vertex) {
-                (Ordering::Less, _) => {
-                    if larger {
-                        Ordering::Greater
-                    } else {
-                        Ordering::Less
-                    }
-                }
-                (Ordering::Equal, Ordering::Equal) => Ordering::Equal,
-                (Ordering::Equal, right) if (right == Ordering::Greater) == larger => Ordering::Equal,
-                (_, right) => right.reverse(),
-            }
-        };
-        let d = b.sqr() - exact(4.0) * &a * &c;
+        let truth = Quadratic { a, b, c };
+        let is_root = |x: f64, larger: bool| is_rounding_of(x, |m| truth.compare(larger, m));
         let correct = match found {
-            Roots::All => a == Exact::ZERO && b == Exact::ZERO && c == Exact::ZERO,
-            Roots::None if a == Exact::ZERO => b == Exact::ZERO && c != Exact::ZERO,
-            Roots::None => d < Exact::ZERO,
-            Roots::One(x) => {
-                (if a == Exact::ZERO { b != Exact::ZERO } else { d == Exact::ZERO })
-                    && is_rounding_of(x, |m| compare(false, m))
-            }
+            Roots::All => truth.count().is_none(),
+            Roots::None => truth.count() == Some(0),
+            Roots::One(x) => truth.count() == Some(1) && is_root(x, false),
             Roots::Two(x, y) => {
-                a != Exact::ZERO
-                    && d > Exact::ZERO
-                    && x.total_cmp(&y).is_le()
-                    && is_rounding_of(x, |m| compare(false, m))
-                    && is_rounding_of(y, |m| compare(true, m))
+                truth.count() == Some(2) && x.total_cmp(&y).is_le() && is_root(x, false) && is_root(y, true)
             }
         };
         assert!(correct, "{input} gives {found:?}");
     }
 
     /// Checks a class of equations; returns how many of them each stage decided.
-    fn check_class(seed: u64, mut coefficients: impl FnMut(&mut Rng) -> [f64; 3]) -> [usize; 4] {
-        let mut rng = Rng::new(seed);
+    fn check_class(seed: u64, mut coefficients: impl FnMut(&mut Random) -> [f64; 3]) -> [usize; 4] {
+        let mut rng = Random::new(seed);
         decisions();
         let mut total = [0; 4];
         for _ in 0..cases(1_000_000) {
@@ -409,7 +378,7 @@ mod tests {
         let mut single = 0;
         check_class(23, |rng| {
             // (p x + q)^2 times a power of two, and now and then a bit off
-            let bits = |rng: &mut Rng| f64::from(rng.integer(-(1 << 26)..1 << 26));
+            let bits = |rng: &mut Random| f64::from(rng.integer(-(1 << 26)..1 << 26));
             let (p, q) = (bits(rng), bits(rng));
             let [i, j] = [0; 2].map(|_| rng.integer(-400..400));
             let scale = |x: f64, k: i32| x * 2f64.powi(k);
@@ -430,7 +399,7 @@ mod tests {
             // M odd of 54 bits is a midpoint; (x - M) (x + w) = x^2 - (M - w) x - M w, whose last coefficient is rounded
             let midpoint = (1_u64 << 53) | rng.bits() >> 11 | 1;
             let w = (rng.bits() % (2 << rng.below(20))) | 1;
-            let power = |rng: &mut Rng| 2f64.powi(rng.integer(-100..100));
+            let power = |rng: &mut Random| 2f64.powi(rng.integer(-100..100));
             #[expect(clippy::cast_precision_loss, reason = "even, hence exact; and the rounding that is wanted")]
             let (b, c) = ((midpoint - w) as f64, (u128::from(midpoint) * u128::from(w)) as f64);
             let (s, t) = (power(rng), power(rng));
@@ -441,7 +410,7 @@ mod tests {
     }
 
     /// A midpoint of two doubles, an odd integer of 54 bits, and its inverse modulo 2^64.
-    fn midpoint_and_inverse(rng: &mut Rng) -> (u64, u64) {
+    fn midpoint_and_inverse(rng: &mut Random) -> (u64, u64) {
         let midpoint = (1 << 53) | (rng.bits() >> 11) | 1;
         let mut inverse = midpoint;
         for _ in 0..6 {

@@ -176,7 +176,7 @@ fn sized<const LIMBS: usize>(v: DVec3, n: DVec3) -> DVec3 {
 mod tests {
     use super::*;
     use crate::exact::stage::decisions;
-    use crate::oracle::{Rng, cases, exact, is_rounding_of};
+    use oracle::{Random, Reflection, cases, is_rounded_quotient};
 
     /// Checks one reflection against exact rational arithmetic, with and without FMA.
     fn check(v: [f64; 3], n: [f64; 3]) -> DVec3 {
@@ -185,19 +185,16 @@ mod tests {
         for other in [kernel::<true>(v[0], v[1], v[2], n[0], n[1], n[2]), reflect(v.into(), n.into())] {
             assert_eq!(found.to_array().map(f64::to_bits), other.to_array().map(f64::to_bits), "{input}, {other:?}");
         }
-        let [v, n] = [v, n].map(|x| x.map(exact));
-        let dot = |a: &[_; 3], b: &[_; 3]| &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2];
-        let k = exact(2.0) * dot(&v, &n) / dot(&n, &n);
+        let Reflection { numerators, denominator } = Reflection::new(v, n);
         for i in 0..3 {
-            let truth = &v[i] - &k * &n[i];
-            assert!(is_rounding_of(found[i], |m| truth.cmp(m)), "{input}, wrong in component {i}");
+            assert!(is_rounded_quotient(found[i], &numerators[i], &denominator), "{input}, wrong in component {i}");
         }
         found
     }
 
     /// Checks a class of pairs; returns how often double-double, fixed-point numbers and integers decided.
-    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 2]) -> [usize; 3] {
-        let mut rng = Rng::new(seed);
+    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 2]) -> [usize; 3] {
+        let mut rng = Random::new(seed);
         let mut total = [0; 3];
         for _ in 0..cases(1_000_000) {
             let [v, n] = vectors(&mut rng);
@@ -212,7 +209,7 @@ mod tests {
         total
     }
 
-    fn vector(rng: &mut Rng, exponents: core::ops::Range<i32>) -> [f64; 3] {
+    fn vector(rng: &mut Random, exponents: core::ops::Range<i32>) -> [f64; 3] {
         [0; 3].map(|_| if rng.below(10) == 0 { 0.0 } else { rng.with_exponent(exponents.clone()) })
     }
 

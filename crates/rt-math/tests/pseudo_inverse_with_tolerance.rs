@@ -3,17 +3,13 @@
 //! The references are matrices with known singular values and vectors, made of rational rotations, so that neither they nor
 //! their truncated pseudo-inverses come from another algorithm; and the exact function, where nothing is dropped.
 
-#[path = "pseudo_inverse/matrices.rs"]
-mod matrices;
-
 use glam::{DMat3, DVec3};
-use matrices::{CLASSES, Random};
+use oracle::matrices::CLASSES;
+use oracle::{Random, cases};
 use rt_math::{PseudoInverse, pseudo_inverse, pseudo_inverse_with_tolerance};
 
 /// Matrices per class: 10^4, or 10^6 with `RT_LONG` in the environment.
-fn cases() -> usize {
-    if std::env::var_os("RT_LONG").is_some() { 1_000_000 } else { 10_000 }
-}
+const LONG: usize = 1_000_000;
 
 fn bits(answer: &PseudoInverse) -> (usize, [u64; 9]) {
     (answer.rank, answer.matrix.to_cols_array().map(f64::to_bits))
@@ -26,7 +22,7 @@ fn outer(u: DVec3, v: DVec3) -> DMat3 {
 /// Three orthogonal vectors of whole numbers up to 64, and their common squared length, from Euler's four parameters.
 fn rotation(random: &mut Random) -> ([DVec3; 3], f64) {
     loop {
-        let [a, b, c, d] = [(); 4].map(|()| random.integer(-4, 4) as f64);
+        let [a, b, c, d] = [(); 4].map(|()| random.small(4));
         let n = a * a + b * b + c * c + d * d;
         if n > 0.0 {
             let x = DVec3::new(a * a + b * b - c * c - d * d, 2.0 * (b * c + a * d), 2.0 * (b * d - a * c));
@@ -48,9 +44,9 @@ struct Known {
 fn known(random: &mut Random) -> Known {
     let ((u, n), (v, m)) = (rotation(random), rotation(random));
     // At most 12 + 38 + 2 bits in a sum of integers up to 64 64 2^38.
-    let mut exponents = [(); 3].map(|()| random.integer(0, 38));
+    let mut exponents = [(); 3].map(|()| random.integer(0..39));
     exponents.sort_by_key(|e| -e);
-    let weights = exponents.map(|e| 2f64.powi(i32::try_from(e).unwrap()));
+    let weights = exponents.map(|e| 2f64.powi(e));
     let terms = [0, 1, 2].map(|k| outer(u[k], v[k]) * weights[k]);
     Known {
         matrix: terms[0] + terms[1] + terms[2],
@@ -77,16 +73,16 @@ fn norm(m: &DMat3) -> f64 {
 
 #[test]
 fn known_singular_values_are_dropped_and_the_rest_inverted() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let (mut worst, mut ranks) = (0.0f64, [0; 4]);
-    for _ in 0..cases() {
+    for _ in 0..cases(LONG) {
         let known = known(&mut random);
         let ratio = [1.0, known.values[1] / known.values[0], known.values[2] / known.values[0], 0.0];
         for rank in 1..=3 {
             if ratio[rank - 1] == ratio[rank] {
                 continue; // equal singular values go together
             }
-            let rtol = ratio[rank] + (ratio[rank - 1] - ratio[rank]) * (random.unit() * 0.49 + 0.5);
+            let rtol = ratio[rank] + (ratio[rank - 1] - ratio[rank]) * (random.uniform() * 0.49 + 0.5);
             let answer = pseudo_inverse_with_tolerance(known.matrix, rtol);
             assert_eq!(answer.rank, rank, "{rtol:e} {:?}", known.matrix.to_cols_array());
             ranks[rank] += 1;
@@ -98,16 +94,16 @@ fn known_singular_values_are_dropped_and_the_rest_inverted() {
     // The reference itself is a sum of rounded terms, within a few units.
     println!("largest error: {worst} epsilon; ranks {ranks:?}");
     assert!(worst <= 16.0, "{worst}");
-    assert!(ranks[1] > cases() / 2 && ranks[2] > cases() / 2 && ranks[3] > cases() / 2, "{ranks:?}");
+    assert!(ranks[1] > cases(LONG) / 2 && ranks[2] > cases(LONG) / 2 && ranks[3] > cases(LONG) / 2, "{ranks:?}");
 }
 
 #[test]
 fn tolerance_far_below_the_precision_of_a_double_is_kept() {
     // The second and third singular value are those of a 2 x 2 block, 2^-200 and less beside the first.
-    let mut random = Random(2);
-    for _ in 0..cases() {
-        let (a, b) = (random.integer(1, 9) as f64, random.integer(1, 9) as f64);
-        let (small, ratio) = (2f64.powi(-200), 2f64.powi(i32::try_from(random.integer(1, 20)).unwrap()));
+    let mut random = Random::new(2);
+    for _ in 0..cases(LONG) {
+        let (a, b) = (random.whole(1, 9), random.whole(1, 9));
+        let (small, ratio) = (2f64.powi(-200), random.power(1..21));
         // (a, b) and (-b, a) are orthogonal, of length^2 n.
         let n = a * a + b * b;
         let (first, second) = (DVec3::new(0.0, a, b), DVec3::new(0.0, -b, a));
@@ -145,8 +141,8 @@ fn singular_values_beyond_the_range_of_doubles_are_dropped() {
 #[test]
 fn without_anything_to_drop_the_answer_is_the_exact_one() {
     for (name, class) in CLASSES {
-        let mut random = Random(3);
-        for _ in 0..cases() / 10 {
+        let mut random = Random::new(3);
+        for _ in 0..cases(LONG) / 10 {
             let m = class(&mut random);
             let exact = bits(&pseudo_inverse(m));
             for rtol in [0.0, -1.0, f64::NEG_INFINITY, 1e-280] {
@@ -161,10 +157,10 @@ fn without_anything_to_drop_the_answer_is_the_exact_one() {
 #[test]
 fn answer_is_the_pseudo_inverse_of_a_matrix_within_the_tolerance() {
     for (name, class) in CLASSES {
-        let mut random = Random(4);
-        for _ in 0..cases() / 10 {
+        let mut random = Random::new(4);
+        for _ in 0..cases(LONG) / 10 {
             let m = class(&mut random);
-            let rtol = 10f64.powf(-8.0 + 8.0 * random.unit());
+            let rtol = 10f64.powf(-8.0 + 8.0 * random.uniform());
             let PseudoInverse { matrix: x, rank } = pseudo_inverse_with_tolerance(m, rtol);
             assert!(rank <= pseudo_inverse(m).rank, "{name} {:?}", m.to_cols_array());
             let in_range = |m: &DMat3| (1e-140..1e140).contains(&norm(m));
@@ -185,10 +181,10 @@ fn answer_is_the_pseudo_inverse_of_a_matrix_within_the_tolerance() {
 
 #[test]
 fn powers_of_two_scale_the_answer_exactly() {
-    let mut random = Random(5);
-    for _ in 0..cases() {
+    let mut random = Random::new(5);
+    for _ in 0..cases(LONG) {
         let m = known(&mut random).matrix;
-        let rtol = 10f64.powf(-6.0 + 6.0 * random.unit());
+        let rtol = 10f64.powf(-6.0 + 6.0 * random.uniform());
         let answer = pseudo_inverse_with_tolerance(m, rtol);
         for exponent in [-1000, -300, 300, 900] {
             let factor = 2f64.powi(exponent);

@@ -113,11 +113,11 @@ fn sized_sign<const LIMBS: usize>(a: DVec3, b: DVec3, n: DVec3) -> Ordering {
 mod tests {
     use super::*;
     use crate::exact::stage::decisions;
-    use crate::oracle::{Rng, cases, exact};
+    use oracle::{Random, cases, exact};
 
     /// Checks a class of pairs against exact rational arithmetic; returns how often filter and integers decided.
-    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 2]) -> [usize; 2] {
-        let mut rng = Rng::new(seed);
+    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 2]) -> [usize; 2] {
+        let mut rng = Random::new(seed);
         let mut total = [0; 2];
         for _ in 0..cases(1_000_000) {
             let [a, b] = vectors(&mut rng);
@@ -175,8 +175,8 @@ mod tests {
     }
 
     /// Checks a class of `(a - b) . n` against exact rational arithmetic; returns how often filter and integers decided.
-    fn check_differences(seed: u64, mut vectors: impl FnMut(&mut Rng) -> [[f64; 3]; 3]) -> [usize; 2] {
-        let mut rng = Rng::new(seed);
+    fn check_differences(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 3]) -> [usize; 2] {
+        let mut rng = Random::new(seed);
         let mut total = [0; 2];
         for _ in 0..cases(1_000_000) {
             let [a, b, n] = vectors(&mut rng);
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn points_exactly_in_a_plane_have_no_side() {
-        let mut rng = Rng::new(78);
+        let mut rng = Random::new(78);
         for _ in 0..cases(1_000_000) {
             // all corners are multiples of one unit below 2^30 of it, and so is the normal of two edges, in its square
             let scale = 2f64.powi(rng.integer(-400..400));
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn terms_that_round_to_the_least_doubles_have_their_sign() {
         // products of about 2^-1074: what rounding leaves of them says nothing about their sum
-        let vectors = |rng: &mut Rng| [[0; 3]; 2].map(|v| v.map(|_| rng.with_exponent(-539..-535)));
+        let vectors = |rng: &mut Random| [[0; 3]; 2].map(|v| v.map(|_| rng.with_exponent(-539..-535)));
         let [_, integers] = check_class(80, vectors);
         assert!(integers > 1_000, "{integers}");
         let [_, integers] = check_differences(81, |rng| {

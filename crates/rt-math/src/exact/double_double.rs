@@ -169,31 +169,31 @@ impl<const FMA: bool> Div for DoubleDouble<FMA> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::{Exact, Rng, exact};
+    use oracle::{Big, Random, exact, power_of_two};
 
     type Number = DoubleDouble<false>;
     type Fused = DoubleDouble<true>;
 
-    fn value<const FMA: bool>(x: DoubleDouble<FMA>) -> Exact {
+    fn value<const FMA: bool>(x: DoubleDouble<FMA>) -> Big {
         exact(x.high) + exact(x.low)
     }
 
-    /// `|approximate - true| <= bound * u^2 * |true|`
-    fn assert_within(approximate: Number, truth: &Exact, bound: u32, input: (Number, Number)) {
+    /// `|approximate - true| <= bound * u^2 * |true|`, where `true` is a quotient.
+    fn assert_within(approximate: Number, (truth, divisor): (&Big, &Big), bound: u32, input: (Number, Number)) {
         assert_eq!(approximate.high, approximate.high + approximate.low, "not normal: {input:?}");
-        let error = value(approximate) - truth;
-        let limit = Exact::from(bound) * exact(2f64.powi(-106)) * truth;
+        let error = value(approximate) * divisor - truth;
+        let limit = exact(f64::from(bound)) * power_of_two(-106) * truth;
         assert!(&error * &error <= &limit * &limit, "{input:?} gives {approximate:?}");
     }
 
-    fn number(rng: &mut Rng) -> Number {
+    fn number(rng: &mut Random) -> Number {
         let high = rng.with_exponent(-100..100);
         Number::sum(high, high * rng.with_exponent(-60..-53))
     }
 
     #[test]
     fn operations_keep_their_bounds_and_their_bits_with_fma() {
-        let mut rng = Rng::new(3);
+        let mut rng = Random::new(3);
         for i in 0..10_000 {
             let x = number(&mut rng);
             // every third pair nearly cancels, in the leading part or in both
@@ -202,10 +202,11 @@ mod tests {
                 1 => Number::sum(-x.high, x.high * rng.with_exponent(-60..-53)),
                 _ => Number::sum(-x.high.next_up(), -x.low),
             };
-            assert_within(x + y, &(value(x) + value(y)), 6, (x, y));
-            assert_within(x - y, &(value(x) - value(y)), 6, (x, y));
-            assert_within(x * y, &(value(x) * value(y)), 9, (x, y));
-            assert_within(x / y, &(value(x) / value(y)), 14, (x, y));
+            let one = exact(1.0);
+            assert_within(x + y, (&(value(x) + value(y)), &one), 6, (x, y));
+            assert_within(x - y, (&(value(x) - value(y)), &one), 6, (x, y));
+            assert_within(x * y, (&(value(x) * value(y)), &one), 9, (x, y));
+            assert_within(x / y, (&value(x), &value(y)), 14, (x, y));
             let fused = |x: Number| Fused { high: x.high, low: x.low };
             assert_eq!(fused(x * y), fused(x) * fused(y));
             assert_eq!(fused(x / y), fused(x) / fused(y));
@@ -216,16 +217,17 @@ mod tests {
 
     #[test]
     fn square_root_keeps_its_bound() {
-        let mut rng = Rng::new(4);
+        let mut rng = Random::new(4);
         for _ in 0..10_000 {
             let x = number(&mut rng);
             let x = if x.high < 0.0 { -x } else { x };
             // |r - sqrt x| <= 6 u^2 sqrt x, told without the root: (1 - 6 u^2)^2 x <= r^2 <= (1 + 6 u^2)^2 x
-            let (low, high) = (Exact::ONE - bound(), Exact::ONE + bound());
-            let square = value(x.sqrt()).sqr();
-            assert!(square >= low.sqr() * value(x) && square <= high.sqr() * value(x), "{x:?}");
+            let (low, high) = (exact(1.0) - bound(), exact(1.0) + bound());
+            let sqr = |x: &Big| x * x;
+            let square = sqr(&value(x.sqrt()));
+            assert!(square >= sqr(&low) * value(x) && square <= sqr(&high) * value(x), "{x:?}");
         }
-        fn bound() -> Exact {
+        fn bound() -> Big {
             exact(6.0 * 2f64.powi(-106))
         }
         assert_eq!(Number::ZERO.sqrt(), Number::ZERO);

@@ -106,11 +106,11 @@ fn split<T: Copy + Sub<Output = T> + Mul<f64, Output = T>>(a: T) -> (T, T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::{Rng, exact};
+    use oracle::{Random, exact};
 
     #[test]
     fn sums_are_error_free() {
-        let mut rng = Rng::new(1);
+        let mut rng = Random::new(1);
         for _ in 0..10_000 {
             let (a, b) = (rng.finite(), rng.finite());
             let (value, error) = two_sum(a, b);
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn products_are_error_free_with_the_same_bits_either_way() {
-        let mut rng = Rng::new(2);
+        let mut rng = Random::new(2);
         let mut in_range = 0;
         for _ in 0..10_000 {
             let (a, b) = (rng.finite(), rng.finite());

@@ -36,11 +36,11 @@ pub fn rounded_ends(h: f64, l: f64, error: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::{Rng, exact, round};
+    use oracle::{Random, exact, rounded};
 
     #[test]
     fn what_is_certain_is_the_nearest_double() {
-        let mut rng = Rng::new(5);
+        let mut rng = Random::new(5);
         let mut certain = [0; 2];
         for _ in 0..10_000 {
             let exponent = [-1074..-1000, -1000..1000, 1000..1024][rng.below(3)].clone();
@@ -53,9 +53,9 @@ mod tests {
             }
             for x in [exact(h) + exact(l) - exact(slack), exact(h) + exact(l) + exact(slack)] {
                 match round_if_certain(h, l, error) {
-                    Some(rounded) => {
+                    Some(found) => {
                         certain[1] += 1;
-                        assert_eq!(rounded, round(&x), "{h:e} {l:e} {error:e}");
+                        assert_eq!(found, rounded(&x), "{h:e} {l:e} {error:e}");
                     }
                     None => certain[0] += 1,
                 }

@@ -44,11 +44,11 @@ pub fn scale<T: core::ops::Mul<f64, Output = T>>(x: T, k: i32) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::{Exact, Rng, exact};
+    use oracle::{Random, exact, power_of_two};
 
     #[test]
     fn mantissa_and_exponent_make_the_number() {
-        let mut rng = Rng::new(51);
+        let mut rng = Random::new(51);
         for _ in 0..10_000 {
             let x = rng.finite();
             if x == 0.0 {
@@ -56,7 +56,7 @@ mod tests {
             }
             let (mantissa, exponent) = mantissa_and_exponent(x);
             assert!((1.0..2.0).contains(&mantissa.abs()), "{x:e}");
-            assert_eq!(exact(mantissa) * Exact::from(2).pow(exponent as isize), exact(x), "{x:e}");
+            assert_eq!(exact(mantissa) * power_of_two(exponent), exact(x), "{x:e}");
         }
     }
 }

@@ -164,21 +164,18 @@ pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
 }
 
 #[cfg(test)]
-#[path = "../../tests/pseudo_inverse/matrices.rs"]
-mod matrices;
-
-#[cfg(test)]
 mod tests {
-    use super::matrices::{CLASSES, Random};
+    use oracle::matrices::CLASSES;
+    use oracle::{Random, cases};
+
     use super::*;
-    use crate::oracle::cases;
 
     /// Every stage decides, and what it decides is what the exact integers say, to the bit.
     #[test]
     fn stages_agree_and_each_one_decides() {
         let mut decided = [0; 3];
         for (name, class) in CLASSES {
-            let mut random = Random(7);
+            let mut random = Random::new(7);
             let mut of_class = [0; 3];
             for _ in 0..cases(100_000) / 10 {
                 let m = class(&mut random);
