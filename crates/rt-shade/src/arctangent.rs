@@ -67,15 +67,15 @@ static ARCTANGENT_OVER_PI: [(f64, f64); 33] = [
 
 #[cfg(test)]
 mod tests {
+    use oracle::{exact, pi, quotient, relative_error};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::reference::{big, pair_error, pi, ratio};
 
     fn check(n: f64, d: f64) {
         let result = arctangent_over_pi(n, d);
-        let exact = (big(n) / big(d)).atan() / pi();
-        let error = pair_error((result.hi, result.lo), &exact);
+        let truth = quotient(&exact(n), &exact(d)).atan() / pi();
+        let error = relative_error((result.hi, result.lo), &truth);
         assert!(error <= 2f64.powi(-62), "atan({n:e} / {d:e}) / pi is off by {error:e}");
     }
 
@@ -100,8 +100,8 @@ mod tests {
     #[test]
     fn the_table_holds_the_nearest_pairs_of_doubles() {
         for (k, &pair) in ARCTANGENT_OVER_PI.iter().enumerate() {
-            let exact = ratio(k, 32).atan() / pi();
-            assert!(pair_error(pair, &exact) <= 2f64.powi(-106), "atan({k}/32)/pi");
+            let truth = quotient(&exact(k as f64), &exact(32.0)).atan() / pi();
+            assert!(relative_error(pair, &truth) <= 2f64.powi(-106), "atan({k}/32)/pi");
         }
     }
 }

@@ -74,6 +74,7 @@ pub(crate) fn clamp_channel(c: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use oracle::{dot, exact, vector};
     use proptest::prelude::*;
 
     use super::*;
@@ -108,10 +109,8 @@ mod tests {
             c in prop::array::uniform3(-1.0f64..1.0),
             w in prop::array::uniform3(-2.0f64..2.0),
         ) {
-            use crate::reference::big;
-            let exact = big(c[0]) * big(w[0]) + big(c[1]) * big(w[1]) + big(c[2]) * big(w[2]);
             let mixture = interpolate(&c.map(DVec3::splat), w).x;
-            let error = (big(mixture) - exact).to_f64().value().abs();
+            let error = (exact(mixture) - dot(&vector(c), &vector(w))).to_f64().value().abs();
             let largest = c.iter().zip(&w).map(|(c, w)| (c * w).abs()).fold(0.0, f64::max);
             prop_assert!(error <= 4.0 * f64::EPSILON * largest, "{} is {:e} away", mixture, error);
         }
@@ -136,7 +135,6 @@ mod tests {
 
     /// Checks that `⌊maxval c + ½⌋` is what [`to_sample`] gives, for a channel in `0..=1`.
     fn check_sample(c: f64, maxval: u16) {
-        use crate::reference::exact;
         let sample = to_sample(c, maxval);
         assert_eq!(integer_sample(c, maxval), sample, "{c:e} of {maxval}, in integers");
         let [doubled, below] =

@@ -22,8 +22,6 @@ mod mapping;
 mod phong;
 mod phong_batch;
 mod power;
-#[cfg(test)]
-mod reference;
 mod texture;
 
 pub use mapping::{sphere_uv, texture_uv};

@@ -189,17 +189,17 @@ fn scale(v: f64, e: i32) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use oracle::{ulps, uv};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::reference::{ulps, uv};
 
     /// What `docs/numerics.md` proves: half an ulp for the last rounding, and 2^-8 for all that goes before.
     const BOUND: f64 = 0.5 + 1.0 / 256.0;
 
     fn check(normal: DVec3) {
         let (u, v) = sphere_uv(normal);
-        let (exact_u, exact_v) = uv(normal);
+        let [exact_u, exact_v] = uv(normal);
         for (name, computed, exact) in [("u", u, &exact_u), ("v", v, &exact_v)] {
             assert!((0.0..=1.0).contains(&computed), "{name} = {computed:e} of {normal:?}");
             // A subnormal result is rounded twice: the first time by at most a quarter of its last place.

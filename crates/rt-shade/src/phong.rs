@@ -166,13 +166,14 @@ fn towards(from: DVec3, to: DVec3) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use oracle::{Random, cases, dot, sign, sub, vector};
     use proptest::prelude::*;
 
     use super::*;
 
     const SHINY: Material = Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
 
-    fn vector() -> impl Strategy<Value = DVec3> {
+    fn any_vector() -> impl Strategy<Value = DVec3> {
         prop::array::uniform3(-1.0f64..1.0)
             .prop_map(DVec3::from_array)
             .prop_filter("not too short", |v| v.length() > 0.01)
@@ -200,7 +201,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_the_sum_of_the_terms(p in vector(), d in vector(), n in vector(), l in vector()) {
+        fn it_is_the_sum_of_the_terms(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector()) {
             prop_assume!((p - l).length() > 0.01);
             let surface = DVec3::new(0.9, 0.5, 0.1);
             let light = lamp(l);
@@ -214,7 +215,7 @@ mod tests {
         }
 
         #[test]
-        fn lights_add_up(p in vector(), d in vector(), n in vector(), l in vector(), m in vector()) {
+        fn lights_add_up(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector(), m in any_vector()) {
             let shade = |lights: &[PointLight]| phong(p, d, n, DVec3::ONE, &SHINY, lights);
             let ambient = DVec3::splat(SHINY.ambient);
             let sum = shade(&[lamp(l)]) + shade(&[lamp(m)]) - ambient;
@@ -222,21 +223,21 @@ mod tests {
         }
 
         #[test]
-        fn both_sides_of_a_surface_are_shaded_alike(p in vector(), d in vector(), n in vector(), l in vector()) {
+        fn both_sides_of_a_surface_are_shaded_alike(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector()) {
             let shade = |normal| phong(p, d, normal, DVec3::ONE, &SHINY, &[lamp(l)]);
             prop_assume!(d.dot(n) != 0.0);
             prop_assert_eq!(shade(n), shade(-n));
         }
 
         #[test]
-        fn lengths_do_not_matter(p in vector(), d in vector(), n in vector(), l in vector(), e in -900..900, f in -900..900) {
+        fn lengths_do_not_matter(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector(), e in -900..900, f in -900..900) {
             let shade = |d, n| phong(p, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
             let (long_d, long_n) = (d * 2f64.powi(e), n * 2f64.powi(f));
             prop_assert!((shade(d, n) - shade(long_d, long_n)).length() < 1e-13);
         }
 
         #[test]
-        fn a_light_behind_the_surface_adds_nothing(d in vector(), n in vector(), l in vector()) {
+        fn a_light_behind_the_surface_adds_nothing(d in any_vector(), n in any_vector(), l in any_vector()) {
             // Eye and light on different sides of the plane through the origin.
             prop_assume!(d.dot(n) * l.dot(n) > 1e-9);
             let color = phong(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
@@ -244,7 +245,7 @@ mod tests {
         }
 
         #[test]
-        fn the_highlight_is_where_the_mirrored_eye_meets_the_light(n in vector(), d in vector(), s in 1.0f64..1000.0) {
+        fn the_highlight_is_where_the_mirrored_eye_meets_the_light(n in any_vector(), d in any_vector(), s in 1.0f64..1000.0) {
             prop_assume!(d.dot(n).abs() > 1e-3);
             let material = Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: s };
             let towards_light = reflect(d, n);
@@ -266,20 +267,13 @@ mod tests {
 
     #[test]
     fn a_grazing_view_has_its_exact_side() {
-        use crate::reference::big;
-        let mut random = 1u64;
-        let mut number = || {
-            random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
-            (random >> 11) as f64 / 2f64.powi(52) - 1.0
-        };
+        let mut random = Random::new(1);
         let mut rounding_would_err = 0;
         for _ in 0..10_000 {
-            let n = DVec3::new(number(), number(), number());
-            let (x, y) = (number(), number());
+            let (n, x, y) = (random.point(), random.uniform(), random.uniform());
             // Perpendicular within the rounding of z.
             let d = DVec3::new(x, y, -(x * n.x + y * n.y) / n.z);
-            let exact = big(d.x) * big(n.x) + big(d.y) * big(n.y) + big(d.z) * big(n.z);
-            let away = exact > big(0.0);
+            let away = sign(&dot(&vector(d), &vector(n))) == Ordering::Greater;
             rounding_would_err += usize::from((unit(d).dot(unit(n)) > 0.0) != away);
             let lit_from = |position| {
                 phong(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(position)]) != DVec3::splat(SHINY.ambient)
@@ -289,35 +283,11 @@ mod tests {
         assert!(rounding_would_err > 500, "{rounding_would_err}");
     }
 
-    /// Pseudo-random numbers: doubles of either sign within 1, and integers.
-    struct Random(u64);
-
-    impl Random {
-        fn below(&mut self, n: u64) -> u64 {
-            self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
-            (self.0 >> 33) % n
-        }
-
-        fn power_of_two(&mut self, exponents: std::ops::Range<i32>) -> f64 {
-            let count = exponents.end.abs_diff(exponents.start);
-            let above = i32::try_from(self.below(count.into())).expect("a short range");
-            2f64.powi(exponents.start + above)
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::from_array([0; 3].map(|_| self.below(1 << 31) as f64 / 2f64.powi(30) - 1.0))
-        }
-    }
-
-    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from
-    /// the other; returns whether the rounded cosine would put it on another side.
+    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from the
+    /// other; returns whether the rounded cosine would put it on another side.
     fn check_side(point: DVec3, light: DVec3, normal: DVec3) -> bool {
         use crate::phong_batch::{SurfacePoint, phong_batch};
-        use crate::reference::exact;
-        let side = (0..3)
-            .map(|i| (exact(light[i]) - exact(point[i])) * exact(normal[i]))
-            .fold(exact(0.0), |sum, term| sum + term)
-            .cmp(&exact(0.0));
+        let side = sign(&dot(&sub(&vector(light), &vector(point)), &vector(normal)));
         // The mirrored light runs nearly into the eye: where it counts, the colour is about 1, and 0 elsewhere.
         let material = &Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: 1.0 };
         let incident = unit(towards(light, point));
@@ -337,19 +307,17 @@ mod tests {
     }
 
     /// The number of random cases: ten thousand, or a million with the environment variable `RT_LONG` set.
-    fn cases() -> usize {
-        if std::env::var_os("RT_LONG").is_some() { 1_000_000 } else { 10_000 }
-    }
+    const LONG: usize = 1_000_000;
 
     #[test]
     fn a_light_beside_the_plane_of_the_surface_has_its_exact_side() {
-        let mut random = Random(1);
+        let mut random = Random::new(1);
         let mut rounding_would_err = 0;
-        for _ in 0..cases() {
-            let scale = random.power_of_two(-900..900);
-            let point = scale * random.power_of_two(-30..30) * random.vector();
-            let normal = random.power_of_two(-900..900) * random.vector();
-            let across = random.vector();
+        for _ in 0..cases(LONG) {
+            let scale = random.power(-900..900);
+            let point = scale * random.power(-30..30) * random.point();
+            let normal = random.power(-900..900) * random.point();
+            let across = random.point();
             // In the plane within rounding, and then a few doubles away.
             let z = -(across.x * normal.x + across.y * normal.y) / normal.z;
             let mut light = point + scale * DVec3 { z, ..across };
@@ -362,26 +330,26 @@ mod tests {
                 rounding_would_err += usize::from(check_side(point, light, normal));
             }
         }
-        assert!(rounding_would_err > cases() / 10, "{rounding_would_err}");
+        assert!(rounding_would_err > cases(LONG) / 10, "{rounding_would_err}");
     }
 
     #[test]
     fn a_light_in_the_plane_of_the_surface_is_on_no_side() {
-        let mut random = Random(2);
+        let mut random = Random::new(2);
         let mut rounding_would_err = 0;
-        for _ in 0..cases() {
+        for _ in 0..cases(LONG) {
             // Small integers: corners, normal and light are exact.
-            let mut corner = || (100.0 * random.vector()).round();
+            let mut corner = || (100.0 * random.point()).round();
             let [point, edge, other] = [corner(), corner(), corner()];
-            let scale = random.power_of_two(-400..400);
-            let normal = edge.cross(other) * random.power_of_two(-400..400);
-            let [s, t] = [random.below(100), random.below(100)].map(|n| n as f64 - 50.0);
+            let scale = random.power(-400..400);
+            let normal = edge.cross(other) * random.power(-400..400);
+            let (s, t) = (random.small(50), random.small(50));
             let light = (point + s * edge + t * other) * scale;
             if normal != DVec3::ZERO && light != point * scale {
                 rounding_would_err += usize::from(check_side(point * scale, light, normal));
             }
         }
-        assert!(rounding_would_err > cases() / 10, "{rounding_would_err}");
+        assert!(rounding_would_err > cases(LONG) / 10, "{rounding_would_err}");
     }
 
     #[test]
@@ -407,9 +375,9 @@ mod tests {
     #[test]
     fn no_term_is_negative_where_rounding_puts_the_light_behind() {
         let material = Material { ambient: 0.0, diffuse: 1.0, specular: 0.0, shininess: 1.0 };
-        let mut random = Random(3);
-        for _ in 0..cases() {
-            let (normal, across, point) = (random.vector(), random.vector(), random.vector());
+        let mut random = Random::new(3);
+        for _ in 0..cases(LONG) {
+            let (normal, across, point) = (random.point(), random.point(), random.point());
             let z = -(across.x * normal.x + across.y * normal.y) / normal.z;
             let light = PointLight { position: point + DVec3 { z, ..across }, color: DVec3::ONE };
             let color = phong(point, -normal, normal, DVec3::ONE, &material, &[light]);

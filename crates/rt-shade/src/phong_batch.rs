@@ -317,15 +317,9 @@ mod tests {
     fn ordinary_points_are_shaded_together() {
         let material = Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
         let lights = [PointLight { position: DVec3::new(3.0, 4.0, 5.0), color: DVec3::ONE }; 2];
-        let mut random = 7u64;
-        let mut vector = || {
-            DVec3::from_array([0; 3].map(|_| {
-                random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
-                (random >> 11) as f64 / 2f64.powi(52) - 1.0
-            }))
-        };
+        let mut random = oracle::Random::new(7);
         for _ in 0..1000 {
-            let cases = [0; LANES].map(|_| Case { vectors: [0; 4].map(|_| vector()), material });
+            let cases = [0; LANES].map(|_| Case { vectors: [0; 4].map(|_| random.point()), material });
             let points = cases.each_ref().map(Case::seen);
             let shaded = group::<false>(&points, &lights);
             assert!((0..LANES).all(|i| !shaded.at(i).is_nan()), "{points:?}");
