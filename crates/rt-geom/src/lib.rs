@@ -21,10 +21,3 @@ pub use shape::{Hit, Shape, Visits};
 pub use sphere::{Side, Sphere};
 pub use sphere_tree::SphereTree;
 pub use triangle::{Inside, Triangle, Verdict, inside_triangle};
-
-// The reference of the tests, for those that look inside.
-#[cfg(test)]
-extern crate self as rt_geom;
-#[cfg(test)]
-#[path = "../tests/reference/mod.rs"]
-mod reference;

@@ -1,48 +1,41 @@
 //! Whether a point is inside a triangle, or in its plane, is exact, and its barycentric weights are correctly rounded, for
 //! every finite input.
 
-mod reference;
-
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use reference::{Rng, cases, cross, dot, is_rounded_quotient, minus, scale_vector, vector};
+use oracle::{Place, Projection, Random, cases, is_rounded_quotient, scale_point, sign};
 use rt_geom::{Inside, Triangle, inside_triangle};
 
-fn check(point: DVec3, [a, b, c]: [DVec3; 3]) -> Inside {
-    let triangle = Triangle::new(a, b, c).unwrap();
-    let [a, b, c, p] = [a, b, c, point].map(vector);
-    let n = cross(&minus(&b, &a), &minus(&c, &a));
-    let turns = [(&b, &c), (&c, &a), (&a, &b)].map(|(from, to)| dot(&n, &cross(&minus(to, from), &minus(&p, from))));
-    let square = dot(&n, &n);
-    let degenerate = square.sign() == Ordering::Equal;
-    let signs = [0, 1, 2].map(|i| turns[i].sign());
-    let zeros = signs.iter().filter(|&&sign| sign == Ordering::Equal).count();
-    let expected = match zeros {
-        _ if degenerate || signs.contains(&Ordering::Less) => Inside::Outside,
-        0 => Inside::Interior,
-        1 => Inside::Edge,
-        _ => Inside::Vertex,
+/// Random cases per class with `RT_LONG`, instead of ten thousand.
+const LONG: usize = 500_000;
+
+fn check(point: DVec3, vertices: [DVec3; 3]) -> Inside {
+    let [a, b, c] = vertices;
+    let (triangle, truth) = (Triangle::new(a, b, c).unwrap(), Projection::new(point, vertices));
+    let expected = match truth.place() {
+        Place::Interior => Inside::Interior,
+        Place::Edge(_) => Inside::Edge,
+        Place::Vertex(_) => Inside::Vertex,
+        Place::Miss | Place::Parallel | Place::Degenerate => Inside::Outside,
     };
     assert_eq!(inside_triangle(point, &triangle), expected, "{point:?} {triangle:?}");
-    let coplanar = dot(&n, &minus(&p, &a)).sign() == Ordering::Equal;
+    let coplanar = sign(&truth.height) == Ordering::Equal;
     assert_eq!(triangle.is_coplanar(point), coplanar, "{point:?} {triangle:?}");
     let weights = triangle.barycentric(point);
-    assert_eq!(weights.is_none(), degenerate, "{triangle:?}");
+    assert_eq!(weights.is_none(), truth.place() == Place::Degenerate, "{triangle:?}");
     if let Some(weights) = weights {
-        for i in 0..3 {
-            let right = is_rounded_quotient(weights[i], &turns[i], &square);
-            assert!(right, "{point:?} {triangle:?} gives {weights:?}");
-        }
+        let right = (0..3).all(|i| is_rounded_quotient(weights[i], &truth.turns[i], &truth.square));
+        assert!(right, "{point:?} {triangle:?} gives {weights:?}");
     }
     expected
 }
 
 /// Runs a class; returns how many points were interior, on an edge, at a vertex, outside.
-fn run(seed: u64, mut case: impl FnMut(&mut Rng) -> (DVec3, [DVec3; 3])) -> [usize; 4] {
-    let mut rng = Rng::new(seed);
+fn run(seed: u64, mut case: impl FnMut(&mut Random) -> (DVec3, [DVec3; 3])) -> [usize; 4] {
+    let mut rng = Random::new(seed);
     let mut counts = [0; 4];
-    for _ in 0..cases() {
+    for _ in 0..cases(LONG) {
         let (point, vertices) = case(&mut rng);
         counts[check(point, vertices) as usize] += 1;
     }
@@ -52,7 +45,7 @@ fn run(seed: u64, mut case: impl FnMut(&mut Rng) -> (DVec3, [DVec3; 3])) -> [usi
 #[test]
 fn benign_in_and_off_the_plane() {
     let counts = run(1, |rng| {
-        let [a, b, c] = [rng.vector(), rng.vector(), rng.vector()];
+        let [a, b, c] = [rng.point(), rng.point(), rng.point()];
         let in_plane = a + rng.uniform() * (b - a) + rng.uniform() * (c - a);
         let off = if rng.bits() & 1 == 0 { DVec3::ZERO } else { 3.0 * rng.uniform() * (b - a).cross(c - a) };
         (in_plane + off, [a, b, c])
@@ -63,14 +56,14 @@ fn benign_in_and_off_the_plane() {
 #[test]
 fn on_edges_and_vertices_and_above_them() {
     let counts = run(2, |rng| {
-        let vertices = [0; 3].map(|_| 12.0 * rng.small_vector(30));
-        let i = rng.below(3) as usize;
+        let vertices = [0; 3].map(|_| 12.0 * rng.small_point(30));
+        let i = rng.below(3);
         let (from, to) = (vertices[i], vertices[(i + 1) % 3]);
         let n = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
         let point = from + rng.small(12) / 12.0 * (to - from) + rng.small(3) * n;
-        let point = if rng.bits() & 3 == 0 { rng.nudge_vector(point, 1) } else { point };
-        let k = rng.below(100) - 50;
-        (scale_vector(point, k), vertices.map(|v| scale_vector(v, k)))
+        let point = if rng.bits() & 3 == 0 { rng.nudge_point(point, 1) } else { point };
+        let k = rng.integer(-50..50);
+        (scale_point(point, k), vertices.map(|v| scale_point(v, k)))
     });
     assert!(counts.iter().all(|&n| n > 400), "{counts:?}");
 }
@@ -79,11 +72,11 @@ fn on_edges_and_vertices_and_above_them() {
 #[test]
 fn within_a_rounding_error_of_an_edge() {
     let counts = run(8, |rng| {
-        let place = rng.pick(&[0.0, 1.0, 100.0]) * rng.vector();
-        let vertices = [rng.vector(), rng.vector(), rng.vector()].map(|v| place + v);
-        let i = rng.below(3) as usize;
+        let place = rng.pick(&[0.0, 1.0, 100.0]) * rng.point();
+        let vertices = [rng.point(), rng.point(), rng.point()].map(|v| place + v);
+        let i = rng.below(3);
         let point = vertices[i] + rng.uniform().abs() * (vertices[(i + 1) % 3] - vertices[i]);
-        (rng.nudge_vector(point, 1), vertices)
+        (rng.nudge_point(point, 1), vertices)
     });
     assert!(counts[0] > 1000 && counts[3] > 1000, "{counts:?}");
 }
@@ -93,7 +86,7 @@ fn within_a_rounding_error_of_an_edge() {
 fn in_the_plane_exactly() {
     run(9, |rng| {
         let mut point = || {
-            let mut part = || f64::from(rng.below(1 << 25)) * 33_554_393.0 - 2f64.powi(49);
+            let mut part = || f64::from(rng.integer(0..1 << 25)) * 33_554_393.0 - 2f64.powi(49);
             let (x, y) = (part(), part());
             DVec3::new(x, y, x + 3.0 * y)
         };
@@ -104,12 +97,12 @@ fn in_the_plane_exactly() {
 #[test]
 fn slivers_and_triangles_without_area() {
     run(3, |rng| {
-        let (a, along) = (rng.vector(), rng.vector());
-        let c = a + rng.uniform() * along + rng.vector() * 2f64.powi(-rng.below(60));
+        let (a, along) = (rng.point(), rng.point());
+        let c = a + rng.uniform() * along + rng.point() * 2f64.powi(-rng.integer(0..60));
         (a + rng.uniform() * along, [a, a + along, c])
     });
     run(4, |rng| {
-        let (a, along) = (rng.small_vector(50), rng.small_vector(5));
+        let (a, along) = (rng.small_point(50), rng.small_point(5));
         (a + rng.small(5) * along, [a, a + rng.small(5) * along, a + rng.small(5) * along])
     });
 }
@@ -117,16 +110,16 @@ fn slivers_and_triangles_without_area() {
 #[test]
 fn far_points_and_every_exponent() {
     run(5, |rng| {
-        let vertices = [rng.vector(), rng.vector(), rng.vector()];
-        (rng.vector() * 10f64.powi(rng.below(17)), vertices)
+        let vertices = [rng.point(), rng.point(), rng.point()];
+        (rng.point() * 10f64.powi(rng.integer(0..17)), vertices)
     });
-    run(6, |rng| (rng.finite_vector(), [0; 3].map(|_| rng.finite_vector())));
+    run(6, |rng| (rng.finite_point(), [0; 3].map(|_| rng.finite_point())));
     let counts = run(7, |rng| {
-        let k = rng.below(2090) - 1070;
-        let vertices = [0; 3].map(|_| rng.small_vector(3) / 2.0);
+        let k = rng.integer(-1070..1020);
+        let vertices = [0; 3].map(|_| rng.small_point(3) / 2.0);
         let point = vertices[0] + rng.pick(&[0.0, 0.25, -0.5]) * (vertices[1] - vertices[0]);
         let point = point + rng.pick(&[0.0, 0.25, 0.5]) * (vertices[2] - vertices[0]);
-        (scale_vector(point, k), vertices.map(|v| scale_vector(v, k)))
+        (scale_point(point, k), vertices.map(|v| scale_point(v, k)))
     });
     assert!(counts.iter().all(|&n| n > 400), "{counts:?}");
 }

@@ -1,25 +1,40 @@
 //! How a ray meets a triangle is exact, and `t` and the barycentric weights of the hit are correctly rounded, for every
 //! finite input.
 
-mod reference;
-
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use reference::triangle::Truth;
-use reference::{Rng, cases, cross, dot, holds, is_rounded_quotient, minus, scale, scale_vector, vector};
+use oracle::{
+    Crossing, Place, Random, cases, cross, dot, exact, holds, is_rounded_quotient, scale, scale_point, sign, sub,
+    vector,
+};
 use rt_geom::{Ray, Triangle, Verdict};
 
-fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Rng) -> Option<Verdict> {
+/// Random cases per class with `RT_LONG`, instead of ten thousand.
+const LONG: usize = 500_000;
+
+/// The verdict on the whole line.
+fn verdict(place: Place) -> Verdict {
+    match place {
+        Place::Degenerate => Verdict::Degenerate,
+        Place::Parallel => Verdict::Parallel,
+        Place::Miss => Verdict::Miss,
+        Place::Interior => Verdict::Interior,
+        Place::Edge(i) => Verdict::Edge(i),
+        Place::Vertex(i) => Verdict::Vertex(i),
+    }
+}
+
+fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Random) -> Option<Verdict> {
     let (ray, triangle) = (Ray::new(origin, direction)?, Triangle::new(a, b, c)?);
-    let truth = Truth::new(&ray, &triangle);
+    let truth = Crossing::new(&vector(direction), [a, b, c].map(|v| sub(&vector(v), &vector(origin))));
     let context = || format!("{ray:?} {triangle:?}");
 
-    let hit = truth.line.is_hit();
-    let expected = if hit && !truth.ahead() { Verdict::Miss } else { truth.line };
+    let hit = truth.place().is_hit();
+    let expected = if hit && !truth.is_ahead() { Verdict::Miss } else { verdict(truth.place()) };
     assert_eq!(triangle.verdict(&ray), expected, "{}", context());
-    assert_eq!(triangle.crosses(&ray), truth.crosses, "{}", context());
-    assert_eq!(triangle.is_degenerate(), truth.line == Verdict::Degenerate, "{}", context());
+    assert_eq!(triangle.crosses(&ray), truth.crosses(), "{}", context());
+    assert_eq!(triangle.is_degenerate(), truth.place() == Place::Degenerate, "{}", context());
 
     let whole = triangle.closest(&ray, f64::NEG_INFINITY..f64::INFINITY);
     assert_eq!(whole.is_some(), hit, "{}", context());
@@ -61,10 +76,10 @@ struct Counts {
     degenerate: usize,
 }
 
-fn run(seed: u64, mut case: impl FnMut(&mut Rng) -> (DVec3, DVec3, [DVec3; 3])) -> Counts {
-    let mut rng = Rng::new(seed);
+fn run(seed: u64, mut case: impl FnMut(&mut Random) -> (DVec3, DVec3, [DVec3; 3])) -> Counts {
+    let mut rng = Random::new(seed);
     let mut counts = Counts::default();
-    for _ in 0..cases() {
+    for _ in 0..cases(LONG) {
         let (origin, direction, vertices) = case(&mut rng);
         match check(origin, direction, vertices, &mut rng) {
             Some(Verdict::Miss) => counts.miss += 1,
@@ -79,12 +94,12 @@ fn run(seed: u64, mut case: impl FnMut(&mut Rng) -> (DVec3, DVec3, [DVec3; 3])) 
     counts
 }
 
-fn triangle(rng: &mut Rng) -> [DVec3; 3] {
-    [rng.vector(), rng.vector(), rng.vector()]
+fn triangle(rng: &mut Random) -> [DVec3; 3] {
+    [rng.point(), rng.point(), rng.point()]
 }
 
 /// A point of the triangle's plane, most often near the triangle.
-fn aim(rng: &mut Rng, [a, b, c]: [DVec3; 3]) -> DVec3 {
+fn aim(rng: &mut Random, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (v, w) = (0.7 * rng.uniform() + 0.4, 0.7 * rng.uniform() + 0.4);
     a + v * (b - a) + w * (c - a)
 }
@@ -93,7 +108,7 @@ fn aim(rng: &mut Rng, [a, b, c]: [DVec3; 3]) -> DVec3 {
 fn benign() {
     let counts = run(1, |rng| {
         let vertices = triangle(rng);
-        let origin = 3.0 * rng.vector();
+        let origin = 3.0 * rng.point();
         (origin, aim(rng, vertices) - origin, vertices)
     });
     assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
@@ -103,21 +118,21 @@ fn benign() {
 #[test]
 fn through_edges_and_vertices() {
     let counts = run(2, |rng| {
-        let vertices = [0; 3].map(|_| 12.0 * rng.small_vector(50));
-        let i = rng.below(3) as usize;
+        let vertices = [0; 3].map(|_| 12.0 * rng.small_point(50));
+        let i = rng.below(3);
         let (a, b, c) = (vertices[i], vertices[(i + 1) % 3], vertices[(i + 2) % 3]);
-        let s = f64::from(rng.below(13)) / 12.0;
+        let s = f64::from(rng.integer(0..13)) / 12.0;
         let target = match rng.below(4) {
             0 => a,
             1 | 2 => a + s * (b - a),
             _ => a + (b - a) / 3.0 + (c - a) / 4.0,
         };
-        let direction = rng.small_vector(100);
+        let direction = rng.small_point(100);
         let origin = target - rng.small(100) * direction;
-        let k = rng.below(80) - 40;
-        let nudge = u64::from(rng.bits() & 3 == 0);
-        let (origin, direction) = (rng.nudge_vector(origin, nudge), rng.nudge_vector(direction, nudge));
-        (scale_vector(origin, k), direction, vertices.map(|v| scale_vector(v, k)))
+        let k = rng.integer(-40..40);
+        let nudge = u64::from(rng.one_in(4));
+        let (origin, direction) = (rng.nudge_point(origin, nudge), rng.nudge_point(direction, nudge));
+        (scale_point(origin, k), direction, vertices.map(|v| scale_point(v, k)))
     });
     assert!(counts.edge > 1000 && counts.vertex > 1000 && counts.interior > 1000, "{counts:?}");
 }
@@ -129,7 +144,7 @@ fn within_a_rounding_error_of_an_edge() {
         let vertices = triangle(rng);
         let s = rng.uniform().abs() * 1.1 - 0.05;
         let target = vertices[0] + s * (vertices[1] - vertices[0]);
-        let origin = rng.vector_with_exponent(0..20);
+        let origin = rng.point_with_exponent(0..20);
         (origin, target - origin, vertices)
     });
     assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
@@ -138,11 +153,11 @@ fn within_a_rounding_error_of_an_edge() {
 #[test]
 fn slivers() {
     let counts = run(4, |rng| {
-        let (a, along) = (rng.vector(), rng.vector());
+        let (a, along) = (rng.point(), rng.point());
         let b = a + along;
-        let c = a + rng.uniform() * along + rng.vector() * 2f64.powi(-rng.below(60));
-        let vertices = [a, b, if rng.bits() & 3 == 0 { rng.nudge_vector(a, 3) } else { c }];
-        let origin = 3.0 * rng.vector();
+        let c = a + rng.uniform() * along + rng.point() * 2f64.powi(-rng.integer(0..60));
+        let vertices = [a, b, if rng.bits() & 3 == 0 { rng.nudge_point(a, 3) } else { c }];
+        let origin = 3.0 * rng.point();
         (origin, aim(rng, vertices) - origin, vertices)
     });
     assert!(counts.miss > 1000 && counts.interior > 500, "{counts:?}");
@@ -151,10 +166,10 @@ fn slivers() {
 #[test]
 fn without_area() {
     let counts = run(5, |rng| {
-        let (a, along) = (rng.small_vector(100), rng.small_vector(10));
+        let (a, along) = (rng.small_point(100), rng.small_point(10));
         let vertices = [a, a + rng.small(10) * along, a + rng.small(10) * along];
-        let origin = rng.small_vector(100);
-        (origin, vertices[rng.below(3) as usize] - origin, vertices)
+        let origin = rng.small_point(100);
+        (origin, vertices[rng.below(3)] - origin, vertices)
     });
     assert!(counts.degenerate > 1000, "{counts:?}");
 }
@@ -165,8 +180,9 @@ fn without_area_but_for_rounding() {
     let counts = run(15, |rng| {
         let along = rng.pick(&[DVec3::new(1.0, 3.0, 5.0), DVec3::new(-3.0, 5.0, 7.0), DVec3::new(5.0, 1.0, -7.0)]);
         // 49 bits, so that seven times as much is a double.
-        let vertices = [0; 3].map(|_| scale(f64::from(rng.below(1 << 24)) * 33_554_393.0, -rng.below(8)) * along);
-        let origin = scale_vector(rng.vector(), 50);
+        let vertices =
+            [0; 3].map(|_| scale(f64::from(rng.integer(0..1 << 24)) * 33_554_393.0, -rng.integer(0..8)) * along);
+        let origin = scale_point(rng.point(), 50);
         (origin, vertices[0] - origin, vertices)
     });
     assert!(counts.degenerate > 9000, "{counts:?}");
@@ -176,10 +192,10 @@ fn without_area_but_for_rounding() {
 #[test]
 fn planes_through_the_origin() {
     let counts = run(6, |rng| {
-        let (e, f) = (rng.small_vector(10), rng.small_vector(10));
+        let (e, f) = (rng.small_point(10), rng.small_point(10));
         let vertices = [0; 3].map(|_| rng.small(10) * e + rng.small(10) * f);
-        let origin = if rng.bits() & 1 == 0 { DVec3::ZERO } else { rng.small_vector(10) };
-        (origin, (vertices[0] + vertices[1] + vertices[2]) / 3.0 - origin + rng.small_vector(2), vertices)
+        let origin = if rng.bits() & 1 == 0 { DVec3::ZERO } else { rng.small_point(10) };
+        (origin, (vertices[0] + vertices[1] + vertices[2]) / 3.0 - origin + rng.small_point(2), vertices)
     });
     assert!(counts.interior > 1000 && counts.parallel > 20, "{counts:?}");
 }
@@ -187,15 +203,15 @@ fn planes_through_the_origin() {
 #[test]
 fn along_the_plane_or_nearly() {
     let counts = run(7, |rng| {
-        let vertices = [0; 3].map(|_| 6.0 * rng.small_vector(30));
+        let vertices = [0; 3].map(|_| 6.0 * rng.small_point(30));
         let [a, b, c] = vertices;
         let inside = rng.small(6) / 6.0 * (b - a) + rng.small(6) / 6.0 * (c - a);
         let mut direction = rng.small(6) * (b - a) + rng.small(6) * (c - a);
         let mut origin = a + inside - direction;
         match rng.below(4) {
-            0 => origin = rng.nudge_vector(origin, 1),
-            1 => direction = rng.nudge_vector(direction, 1),
-            2 => origin += rng.small_vector(1),
+            0 => origin = rng.nudge_point(origin, 1),
+            1 => direction = rng.nudge_point(direction, 1),
+            2 => origin += rng.small_point(1),
             _ => {}
         }
         (origin, direction, vertices)
@@ -206,9 +222,9 @@ fn along_the_plane_or_nearly() {
 #[test]
 fn small_and_far() {
     let counts = run(8, |rng| {
-        let place = rng.vector() * 10f64.powi(rng.below(12));
+        let place = rng.point() * 10f64.powi(rng.integer(0..12));
         let vertices = triangle(rng).map(|v| place + v);
-        let origin = rng.vector();
+        let origin = rng.point();
         (origin, (aim(rng, vertices) - origin) * rng.with_exponent(-40..40), vertices)
     });
     assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
@@ -216,12 +232,12 @@ fn small_and_far() {
 
 #[test]
 fn every_exponent() {
-    run(9, |rng| (rng.finite_vector(), rng.finite_vector(), [0; 3].map(|_| rng.finite_vector())));
+    run(9, |rng| (rng.finite_point(), rng.finite_point(), [0; 3].map(|_| rng.finite_point())));
     run(10, |rng| {
         // one huge or tiny number in a plain triangle
         let mut vertices = triangle(rng);
-        let (mut origin, mut direction) = (rng.vector(), rng.vector());
-        let (at, axis) = (rng.below(5) as usize, rng.below(3) as usize);
+        let (mut origin, mut direction) = (rng.point(), rng.point());
+        let (at, axis) = (rng.below(5), rng.below(3));
         let odd = rng.finite();
         match at {
             0 => origin[axis] = odd,
@@ -235,11 +251,11 @@ fn every_exponent() {
 #[test]
 fn scenes_scaled_to_the_ends_of_the_range() {
     let counts = run(11, |rng| {
-        let (k, l) = (rng.below(2090) - 1070, rng.below(2090) - 1070);
-        let vertices = if rng.bits() & 1 == 0 { triangle(rng) } else { [0; 3].map(|_| rng.small_vector(3) / 2.0) };
-        let origin = rng.small_vector(8) / 4.0;
+        let (k, l) = (rng.integer(-1070..1020), rng.integer(-1070..1020));
+        let vertices = if rng.bits() & 1 == 0 { triangle(rng) } else { [0; 3].map(|_| rng.small_point(3) / 2.0) };
+        let origin = rng.small_point(8) / 4.0;
         let target = if rng.bits() & 1 == 0 { vertices[0] } else { aim(rng, vertices) };
-        (scale_vector(origin, k), scale_vector(target - origin, l), vertices.map(|v| scale_vector(v, k)))
+        (scale_point(origin, k), scale_point(target - origin, l), vertices.map(|v| scale_point(v, k)))
     });
     assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
 }
@@ -251,7 +267,7 @@ fn t_halfway_between_doubles() {
         let z = rng.with_exponent(0..3);
         let origin = DVec3::new(0.0, 0.0, rng.with_exponent(-4..6));
         let vertices = [DVec3::new(-1.0, -1.0, z), DVec3::new(3.0, -1.0, z), DVec3::new(-1.0, 3.0, z)];
-        let turn = rng.below(3) as usize;
+        let turn = rng.below(3);
         let turned = |v: DVec3| DVec3::from_array([0, 1, 2].map(|i| v[(i + turn) % 3]));
         (turned(origin), turned(DVec3::new(0.0, 0.0, rng.pick(&[1.0, -2.0, 0.25]))), vertices.map(turned))
     });
@@ -260,11 +276,11 @@ fn t_halfway_between_doubles() {
 #[test]
 fn origin_in_the_triangle() {
     let counts = run(13, |rng| {
-        let vertices = [0; 3].map(|_| 12.0 * rng.small_vector(20));
+        let vertices = [0; 3].map(|_| 12.0 * rng.small_point(20));
         let [a, b, c] = vertices;
-        let (v, w) = (f64::from(rng.below(7)) / 6.0, f64::from(rng.below(5)) / 4.0);
+        let (v, w) = (f64::from(rng.integer(0..7)) / 6.0, f64::from(rng.integer(0..5)) / 4.0);
         let origin = a + v * (b - a) + w * (c - a);
-        (if rng.bits() & 1 == 0 { origin } else { rng.nudge_vector(origin, 1) }, rng.vector(), vertices)
+        (if rng.bits() & 1 == 0 { origin } else { rng.nudge_point(origin, 1) }, rng.point(), vertices)
     });
     assert!(counts.interior > 1000 && counts.edge > 100, "{counts:?}");
 }
@@ -273,11 +289,11 @@ fn origin_in_the_triangle() {
 #[test]
 fn origin_within_a_rounding_error_of_the_triangle() {
     let counts = run(16, |rng| {
-        let place = rng.pick(&[0.0, 1.0, 100.0]) * rng.vector();
+        let place = rng.pick(&[0.0, 1.0, 100.0]) * rng.point();
         let vertices = triangle(rng).map(|v| place + v);
         let [a, b, c] = vertices;
         let (v, w) = (0.5 * rng.uniform().abs(), 0.5 * rng.uniform().abs());
-        (rng.nudge_vector(a + v * (b - a) + w * (c - a), 1), rng.vector(), vertices)
+        (rng.nudge_point(a + v * (b - a) + w * (c - a), 1), rng.point(), vertices)
     });
     assert!(counts.interior > 1000 && counts.miss > 1000, "{counts:?}");
 }
@@ -285,30 +301,28 @@ fn origin_within_a_rounding_error_of_the_triangle() {
 #[test]
 fn normals_are_unit_vectors_at_right_angles_to_the_edges() {
     const U: f64 = f64::EPSILON / 2.0;
-    let mut rng = Rng::new(14);
-    for i in 0..cases() {
+    let mut rng = Random::new(14);
+    for i in 0..cases(LONG) {
         let [a, b, mut c] = triangle(&mut rng);
         if i % 2 == 0 {
             // a sliver, down to a rounding error
-            c = a + rng.uniform() * (b - a) + 2f64.powi(-rng.below(60)) * rng.vector();
+            c = a + rng.uniform() * (b - a) + 2f64.powi(-rng.integer(0..60)) * rng.point();
         }
-        let k = rng.below(2090) - 1068;
-        let [a, b, c] = [a, b, c].map(|v| scale_vector(v, k));
+        let k = rng.integer(-1068..1022);
+        let [a, b, c] = [a, b, c].map(|v| scale_point(v, k));
         let triangle = Triangle::new(a, b, c).unwrap();
         let [a, b, c] = [a, b, c].map(vector);
-        let exact_normal = cross(&minus(&b, &a), &minus(&c, &a));
+        let exact_normal = cross(&sub(&b, &a), &sub(&c, &a));
         let Some(normal) = triangle.normal() else {
-            assert!(exact_normal.iter().all(|x| x.sign() == Ordering::Equal), "{triangle:?}");
+            assert!(exact_normal.iter().all(|x| sign(x) == Ordering::Equal), "{triangle:?}");
             continue;
         };
         // |normal x n| <= 4.6 u |n|, and normal . n > 0
         let normal = vector(normal);
-        let (off, bound) = (cross(&normal, &exact_normal), reference::exact(4.6 * U));
-        let limit = &(&bound * &bound) * &dot(&exact_normal, &exact_normal);
-        assert!(dot(&off, &off).cmp(&limit) != Ordering::Greater, "{triangle:?}");
-        assert_eq!(dot(&normal, &exact_normal).sign(), Ordering::Greater, "{triangle:?}");
-        let excess = &dot(&normal, &normal) - &reference::exact(1.0);
-        let limit = reference::exact(8.3 * U);
-        assert!(excess.cmp(&limit) == Ordering::Less && (-&excess).cmp(&limit) == Ordering::Less);
+        let (off, bound) = (cross(&normal, &exact_normal), exact(4.6 * U));
+        assert!(dot(&off, &off) <= &bound * &bound * dot(&exact_normal, &exact_normal), "{triangle:?}");
+        assert_eq!(sign(&dot(&normal, &exact_normal)), Ordering::Greater, "{triangle:?}");
+        let (excess, limit) = (dot(&normal, &normal) - exact(1.0), exact(8.3 * U));
+        assert!(excess < limit && -excess < limit, "{triangle:?}");
     }
 }

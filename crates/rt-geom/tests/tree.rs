@@ -5,48 +5,10 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use oracle::Random;
 use rt_geom::{Bvh, Hit, Ray, Shape, Sphere, SphereTree, Triangle};
 
 const AHEAD: Range<f64> = 0.0..f64::INFINITY;
-
-/// S. Steele, D. Lea and C. Flood, "Fast Splittable Pseudorandom Number Generators", 2014.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// In 0..1.
-    fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    fn cube(&mut self) -> DVec3 {
-        DVec3::new(self.signed(), self.signed(), self.signed())
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        usize::try_from(self.bits() % n as u64).unwrap()
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        loop {
-            let v = self.cube();
-            if (0.01..1.0).contains(&v.length_squared()) {
-                return v.normalize();
-            }
-        }
-    }
-}
 
 struct Scene {
     name: &'static str,
@@ -63,8 +25,8 @@ fn ball(center: DVec3, radius: f64) -> Sphere {
 
 fn soup(random: &mut Random, n: usize, size: f64) -> Vec<Triangle> {
     let triangle = |_| {
-        let a = random.cube();
-        Triangle::new(a, a + size * random.cube(), a + size * random.cube()).unwrap()
+        let a = random.point();
+        Triangle::new(a, a + size * random.point(), a + size * random.point()).unwrap()
     };
     (0..n).map(triangle).collect()
 }
@@ -87,22 +49,22 @@ fn globe(n: usize) -> Vec<Triangle> {
 }
 
 fn scenes() -> Vec<Scene> {
-    let random = &mut Random(7);
+    let random = &mut Random::new(7);
     let mut scenes = Vec::new();
     let mut add = |name, spheres, triangles, center, size| {
         scenes.push(Scene { name, spheres, triangles, center, size });
     };
     let uniform = |random: &mut Random, n: usize, scale: f64, center: DVec3| -> Vec<Sphere> {
-        (0..n).map(|_| ball(center + scale * random.cube(), 0.08 * scale)).collect()
+        (0..n).map(|_| ball(center + scale * random.point(), 0.08 * scale)).collect()
     };
     add("uniform", uniform(random, 300, 1.0, DVec3::ZERO), vec![], DVec3::ZERO, 1.0);
     add("one", vec![ball(DVec3::X, 0.5)], vec![], DVec3::X, 1.0);
     add("a full block", uniform(random, 16, 1.0, DVec3::ZERO), vec![], DVec3::ZERO, 1.0);
     add("one more than a block", uniform(random, 17, 1.0, DVec3::ZERO), vec![], DVec3::ZERO, 1.0);
-    let log = |random: &mut Random, decades: f64| 10f64.powf(-decades * random.unit());
+    let log = |random: &mut Random, decades: f64| 10f64.powf(-decades * random.share());
     add(
         "twelve decades of radius",
-        (0..300).map(|_| ball(random.cube(), log(random, 12.0))).collect(),
+        (0..300).map(|_| ball(random.point(), log(random, 12.0))).collect(),
         vec![],
         DVec3::ZERO,
         1.0,
@@ -117,16 +79,16 @@ fn scenes() -> Vec<Scene> {
     add("touching on a line", (-100..100).map(line).collect(), vec![], DVec3::ZERO, 100.0);
     let powers = |i: i32| ball(DVec3::new(2f64.powi(i), 0.0, 0.0), 2f64.powi(i - 2));
     add("powers of two on a line", (-120..120).map(powers).collect(), vec![], DVec3::ZERO, 1e3);
-    let points = |_| ball((8.0 * random.cube()).round() / 8.0, if random.unit() < 0.5 { 0.0 } else { 0.125 });
+    let points = |_| ball((8.0 * random.point()).round() / 8.0, if random.share() < 0.5 { 0.0 } else { 0.125 });
     add("points on a grid", (0..300).map(points).collect(), vec![], DVec3::ZERO, 1.0);
     let far = DVec3::new(1e9, -2e9, 3e9);
     add("far away", uniform(random, 200, 1.0, far), vec![], far, 1.0);
     for (name, scale) in [("1e30", 1e30), ("1e-30", 1e-30), ("1e300", 1e300), ("1e-300", 1e-300)] {
         add(name, uniform(random, 100, scale, DVec3::ZERO), vec![], DVec3::ZERO, scale);
     }
-    let huge = |_| ball(random.cube() * f64::MAX, random.unit() * f64::MAX);
+    let huge = |_| ball(random.point() * f64::MAX, random.share() * f64::MAX);
     add("no finite sphere encloses", (0..60).map(huge).collect(), vec![], DVec3::ZERO, 1e308);
-    let tiny = |_| ball(random.cube() * 1e-310, 1e-310 * random.unit());
+    let tiny = |_| ball(random.point() * 1e-310, 1e-310 * random.share());
     add("subnormal", (0..60).map(tiny).collect(), vec![], DVec3::ZERO, 1e-310);
     add("triangles", vec![], soup(random, 250, 0.3), DVec3::ZERO, 1.0);
     add("a closed mesh", vec![], globe(12), DVec3::ZERO, 1.0);
@@ -138,7 +100,7 @@ fn scenes() -> Vec<Scene> {
 
 /// Rays of every kind at a scene: from within, from outside, and from far away past the edge of something.
 fn rays(scene: &Scene, n: usize) -> Vec<Ray> {
-    let random = &mut Random(n as u64);
+    let random = &mut Random::new(n as u64);
     let Scene { spheres, triangles, center, size, .. } = scene;
     let shape_point = |random: &mut Random| {
         let i = random.below((spheres.len() + triangles.len()).max(1));
@@ -153,20 +115,20 @@ fn rays(scene: &Scene, n: usize) -> Vec<Ray> {
         if rays.len() == n {
             break;
         }
-        let length = 10f64.powf(3.0 * random.signed());
+        let length = 10f64.powf(3.0 * random.uniform());
         // At the ends of the range of doubles some of these overflow: then the next kind takes its turn.
         let (origin, direction) = match attempt % 4 {
-            0 => (*center + *size * random.cube(), random.direction() * length),
+            0 => (*center + *size * random.point(), random.direction() * length),
             1 => {
                 let origin = *center + 4.0 * *size * random.direction();
-                (origin, (*center - origin + *size * random.cube()) * (length / *size))
+                (origin, (*center - origin + *size * random.point()) * (length / *size))
             }
             _ => {
                 // Grazing: aimed at the silhouette, within a few parts in 10^7 or exactly up to rounding.
                 let (at, radius) = shape_point(random);
                 let away = random.direction();
-                let distance = *size * 10f64.powf(4.0 * random.unit());
-                let miss = [0.0, 1e-7 * random.signed(), 1e-12 * random.signed()][random.below(3)];
+                let distance = *size * 10f64.powf(4.0 * random.share());
+                let miss = [0.0, 1e-7 * random.uniform(), 1e-12 * random.uniform()][random.below(3)];
                 let edge = at + away.any_orthonormal_vector() * radius * (1.0 + miss);
                 let origin = edge + away * distance;
                 (origin, if radius > 0.0 { -away * length } else { (edge - origin) * (length / *size) })
@@ -307,15 +269,15 @@ fn every_instruction_set_gives_the_same_bits() {
 
 #[test]
 fn rays_of_extreme_exponents_are_answered_as_by_the_loop() {
-    let random = &mut Random(3);
+    let random = &mut Random::new(3);
     let exponents = [-1074, -1022, -600, -300, -60, 0, 60, 300, 600, 1000];
     for scene in scenes() {
         let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
         for _ in 0..200 {
             let power = |random: &mut Random| 2f64.powi(exponents[random.below(exponents.len())]);
-            let origin = random.cube() * power(random);
+            let origin = random.point() * power(random);
             let direction = random.direction() * power(random);
-            let aimed = (scene.center - origin) * random.unit();
+            let aimed = (scene.center - origin) * random.share();
             for direction in [direction, aimed] {
                 let Some(ray) = Ray::new(origin, direction) else { continue };
                 let expected = bits(closest_by_loop(&scene, &ray, &AHEAD));
@@ -341,8 +303,8 @@ fn shapes_keep_their_index() {
 
 #[test]
 fn the_tree_is_the_same_for_any_number_of_threads() {
-    let random = &mut Random(11);
-    let spheres: Vec<Sphere> = (0..20_000).map(|_| ball(random.cube(), 0.02 * random.unit())).collect();
+    let random = &mut Random::new(11);
+    let spheres: Vec<Sphere> = (0..20_000).map(|_| ball(random.point(), 0.02 * random.share())).collect();
     let tree = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let tree = pool.install(|| Bvh::new(spheres.clone(), vec![]));
@@ -448,12 +410,12 @@ fn equal_primitives_cost_what_one_does_and_the_lowest_index_answers() {
 
 #[test]
 fn copies_of_spheres_with_one_center_are_left_out_too() {
-    let random = &mut Random(13);
+    let random = &mut Random::new(13);
     let shells: Vec<Sphere> = (0..40_000).map(|i| ball(DVec3::ONE, 1.0 + f64::from(i % 37) / 64.0)).collect();
     let scene = Scene { name: "shells", spheres: shells, triangles: vec![], center: DVec3::ONE, size: 1.0 };
     let tree = Bvh::new(scene.spheres.clone(), vec![]);
     for _ in 0..100 {
-        let ray = Ray::new(DVec3::new(1.0, 1.0, -5.0), DVec3::Z + 0.5 * random.cube()).unwrap();
+        let ray = Ray::new(DVec3::new(1.0, 1.0, -5.0), DVec3::Z + 0.5 * random.point()).unwrap();
         let (hit, visits) = tree.closest_counted(&ray, AHEAD);
         assert_eq!(bits(hit), bits(closest_by_loop(&scene, &ray, &AHEAD)), "{ray:?}");
         assert!(visits.tests <= 37, "{visits:?}");
@@ -462,12 +424,12 @@ fn copies_of_spheres_with_one_center_are_left_out_too() {
 
 #[test]
 fn the_tree_saves_tests() {
-    let random = &mut Random(5);
-    let spheres: Vec<Sphere> = (0..10_000).map(|_| ball(random.cube(), 0.01)).collect();
+    let random = &mut Random::new(5);
+    let spheres: Vec<Sphere> = (0..10_000).map(|_| ball(random.point(), 0.01)).collect();
     let tree = Bvh::new(spheres, vec![]);
     let (mut work, mut tests) = (0, 0);
     for _ in 0..1000 {
-        let ray = Ray::new(random.cube(), random.direction()).unwrap();
+        let ray = Ray::new(random.point(), random.direction()).unwrap();
         let (hit, visits) = tree.closest_counted(&ray, AHEAD);
         assert_eq!(bits(hit), bits(tree.closest(&ray, AHEAD)));
         assert_eq!(tree.any(&ray, AHEAD), hit.is_some());

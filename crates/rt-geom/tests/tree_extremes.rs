@@ -3,12 +3,10 @@
 //!
 //! `RT_LONG=1` casts 300,000 rays.
 
-mod reference;
-
 use std::ops::Range;
 
 use glam::DVec3;
-use reference::{Rng, holds, scale, scale_vector};
+use oracle::{Random, holds, scale, scale_point};
 use rt_geom::{Bvh, Hit, Ray, Sphere, SphereTree, Triangle};
 use rt_math::Roots;
 
@@ -22,36 +20,26 @@ struct Scene {
     size: i32,
 }
 
-/// A unit vector.
-fn unit(rng: &mut Rng) -> DVec3 {
-    loop {
-        let v = rng.vector();
-        if (0.01..1.0).contains(&v.length_squared()) {
-            return v.normalize();
-        }
-    }
-}
-
 /// An exponent of every order of magnitude, more often near the ends.
-fn exponent(rng: &mut Rng) -> i32 {
+fn exponent(rng: &mut Random) -> i32 {
     match rng.below(8) {
-        0 => rng.below(64) - 1074,
-        1 => 1022 - rng.below(64),
-        2 => rng.below(128) - 64,
-        _ => rng.below(2096) - 1074,
+        0 => rng.integer(-1074..-1010),
+        1 => 1022 - rng.integer(0..64),
+        2 => rng.integer(-64..64),
+        _ => rng.integer(-1074..1022),
     }
 }
 
-fn scene(rng: &mut Rng) -> Scene {
+fn scene(rng: &mut Random) -> Scene {
     let size = exponent(rng);
     let place = match rng.below(4) {
         0 => DVec3::ZERO,
-        1 => scale_vector(rng.vector(), (size + rng.below(8)).min(1022)),
+        1 => scale_point(rng.point(), (size + rng.integer(0..8)).min(1022)),
         // Only some bits of the shapes are left.
-        2 => scale_vector(rng.vector(), (size + rng.below(56)).min(1022)),
+        2 => scale_point(rng.point(), (size + rng.integer(0..56)).min(1022)),
         _ => {
             let k = exponent(rng);
-            scale_vector(rng.vector(), k)
+            scale_point(rng.point(), k)
         }
     };
     let count = if rng.below(64) == 0 { 300 } else { rng.pick(&[1, 3, 6, 17, 20, 33]) };
@@ -59,8 +47,8 @@ fn scene(rng: &mut Rng) -> Scene {
     let decades = rng.pick(&[1, 20, 60]);
     let (mut spheres, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..count {
-        let at = |rng: &mut Rng, k: i32| place + scale_vector(rng.vector(), k);
-        let small = size - rng.below(decades);
+        let at = |rng: &mut Random, k: i32| place + scale_point(rng.point(), k);
+        let small = size - rng.integer(0..decades);
         let again = rng.below(4) == 0;
         if f64::from(i) < part * f64::from(count) {
             let radius = scale(rng.uniform().abs(), small);
@@ -68,7 +56,7 @@ fn scene(rng: &mut Rng) -> Scene {
             spheres.extend(if again { spheres.last().copied().or(sphere) } else { sphere });
         } else {
             let a = at(rng, size);
-            let corner = |rng: &mut Rng| a + scale_vector(rng.vector(), small);
+            let corner = |rng: &mut Random| a + scale_point(rng.point(), small);
             let triangle = Triangle::new(a, corner(rng), corner(rng));
             triangles.extend(if again { triangles.last().copied().or(triangle) } else { triangle });
         }
@@ -77,16 +65,16 @@ fn scene(rng: &mut Rng) -> Scene {
 }
 
 /// A direction of any length, down to a few units of the smallest subnormal.
-fn direction(rng: &mut Rng, size: i32) -> DVec3 {
+fn direction(rng: &mut Random, size: i32) -> DVec3 {
     match rng.below(8) {
-        0 => scale_vector(rng.small_vector(20), -1074 + rng.below(8)),
-        1 => scale_vector(unit(rng), rng.below(64) - 1074),
-        2 => scale_vector(unit(rng), 1023 - rng.below(16)),
-        3 => scale_vector(unit(rng), (size + rng.below(40) - 20).clamp(-1074, 1023)),
+        0 => scale_point(rng.small_point(20), rng.integer(-1074..-1066)),
+        1 => scale_point(rng.direction(), rng.integer(-1074..-1010)),
+        2 => scale_point(rng.direction(), 1023 - rng.integer(0..16)),
+        3 => scale_point(rng.direction(), (size + rng.integer(-20..20)).clamp(-1074, 1023)),
         // The parameters of hits are at the ends of the range.
-        4 => scale_vector(unit(rng), (size - 1020 + rng.below(40)).clamp(-1074, 1023)),
-        5 => scale_vector(unit(rng), (size + 1074 - rng.below(40)).clamp(-1074, 1023)),
-        6 => unit(rng),
+        4 => scale_point(rng.direction(), (size - 1020 + rng.integer(0..40)).clamp(-1074, 1023)),
+        5 => scale_point(rng.direction(), (size + 1074 - rng.integer(0..40)).clamp(-1074, 1023)),
+        6 => rng.direction(),
         _ => DVec3::from_array([0; 3].map(|_| {
             let k = exponent(rng);
             scale(rng.uniform(), k)
@@ -98,11 +86,11 @@ fn direction(rng: &mut Rng, size: i32) -> DVec3 {
 fn unit_of(direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     let k = if largest < 1e-200 { 1000 } else { -((largest.to_bits() >> 52) as i32 - 1023) };
-    scale_vector(direction, k).normalize()
+    scale_point(direction, k).normalize()
 }
 
 /// A ray that most often meets something, or nearly.
-fn ray(rng: &mut Rng, scene: &Scene) -> Option<Ray> {
+fn ray(rng: &mut Random, scene: &Scene) -> Option<Ray> {
     let Scene { spheres, triangles, place, size } = scene;
     let direction = direction(rng, *size);
     if direction == DVec3::ZERO {
@@ -110,7 +98,7 @@ fn ray(rng: &mut Rng, scene: &Scene) -> Option<Ray> {
     }
     let along = unit_of(direction);
     let target = match rng.below(4) {
-        0 => *place + scale_vector(rng.vector(), *size),
+        0 => *place + scale_point(rng.point(), *size),
         _ => match (spheres.is_empty(), triangles.is_empty()) {
             (false, all) if all || rng.below(2) == 0 => {
                 let sphere = rng.pick(spheres);
@@ -126,11 +114,11 @@ fn ray(rng: &mut Rng, scene: &Scene) -> Option<Ray> {
     };
     let far = match rng.below(4) {
         0 => DVec3::ZERO,
-        1 => scale_vector(along, (size + rng.below(4)).min(1023)),
-        2 => scale_vector(along, (size + rng.below(50) - 10).min(1023)),
+        1 => scale_point(along, (size + rng.integer(0..4)).min(1023)),
+        2 => scale_point(along, (size + rng.integer(-10..40)).min(1023)),
         _ => {
             let k = exponent(rng);
-            scale_vector(along, k)
+            scale_point(along, k)
         }
     };
     let origin = if rng.below(3) > 0 { target - far } else { target + far };
@@ -169,7 +157,7 @@ fn bits(hit: Option<Hit>) -> Option<(usize, u64)> {
 }
 
 /// A range of which each end may be near a hit.
-fn range(rng: &mut Rng, hits: &[Hit]) -> Range<f64> {
+fn range(rng: &mut Random, hits: &[Hit]) -> Range<f64> {
     let mut end = |whole: f64| {
         if hits.is_empty() || rng.below(3) == 0 {
             let smallest = f64::from_bits(1);
@@ -197,7 +185,7 @@ struct Counts {
 
 /// Casts `rays` rays.
 fn compare(seed: u64, rays: usize) -> Counts {
-    let mut rng = Rng::new(seed);
+    let mut rng = Random::new(seed);
     let mut counts = Counts::default();
     for turn in 0.. {
         if counts.rays >= rays {

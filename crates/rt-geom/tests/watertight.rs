@@ -1,16 +1,16 @@
 //! A closed mesh cannot be passed: a ray from inside hits it, a ray through a shared edge or vertex hits every triangle
 //! that owns it, and crossings count to inside or outside whatever the ray passes through.
 
-mod reference;
-
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use reference::triangle::Truth;
-use reference::{Rng, cases};
+use oracle::{Crossing, Random, cases, sub, vector};
 use rt_geom::{Ray, Triangle, Verdict};
 
 const ALL: std::ops::Range<f64> = 0.0..f64::INFINITY;
+
+/// Random cases per class with `RT_LONG`, instead of ten thousand.
+const LONG: usize = 500_000;
 
 /// A closed mesh, its vertices on a grid of `2^-20`: differences of points of the grid are exact, so that a ray can be
 /// aimed at a vertex or the middle of an edge and meets it exactly.
@@ -151,8 +151,8 @@ impl Mesh {
         [Self::icosphere(2), Self::cube(), Self::corner(), Self::fan(), Self::torus()]
     }
 
-    fn random_inside(&self, rng: &mut Rng) -> DVec3 {
-        to_grid(self.inside + 0.0625 * rng.vector())
+    fn random_inside(&self, rng: &mut Random) -> DVec3 {
+        to_grid(self.inside + 0.0625 * rng.point())
     }
 }
 
@@ -174,7 +174,7 @@ fn check_from_inside(mesh: &Mesh, triangles: &[Triangle], ray: &Ray) {
 
 #[test]
 fn rays_through_vertices_hit_every_triangle_around() {
-    let mut rng = Rng::new(1);
+    let mut rng = Random::new(1);
     for mesh in Mesh::all() {
         let triangles = mesh.triangles();
         for (i, &vertex) in mesh.vertices.iter().enumerate() {
@@ -196,7 +196,7 @@ fn rays_through_vertices_hit_every_triangle_around() {
 
 #[test]
 fn rays_through_edges_hit_both_triangles() {
-    let mut rng = Rng::new(2);
+    let mut rng = Random::new(2);
     for mesh in Mesh::all() {
         let triangles = mesh.triangles();
         for face in &mesh.faces {
@@ -224,17 +224,17 @@ fn rays_through_edges_hit_both_triangles() {
 
 #[test]
 fn random_rays_from_inside_do_not_leak() {
-    let mut rng = Rng::new(3);
+    let mut rng = Random::new(3);
     for mesh in Mesh::all() {
         let triangles = mesh.triangles();
-        for _ in 0..cases() / 20 {
-            let ray = Ray::new(mesh.random_inside(&mut rng), rng.vector()).unwrap();
+        for _ in 0..cases(LONG) / 20 {
+            let ray = Ray::new(mesh.random_inside(&mut rng), rng.point()).unwrap();
             check_from_inside(&mesh, &triangles, &ray);
             // so near an edge that rounding decides
             let face = rng.pick(&mesh.faces);
             let s = rng.uniform().abs();
             let target = mesh.vertices[face[0]] + s * (mesh.vertices[face[1]] - mesh.vertices[face[0]]);
-            let origin = mesh.inside + 0.0625 * rng.vector();
+            let origin = mesh.inside + 0.0625 * rng.point();
             check_from_inside(&mesh, &triangles, &Ray::new(origin, target - origin).unwrap());
         }
     }
@@ -242,18 +242,20 @@ fn random_rays_from_inside_do_not_leak() {
 
 #[test]
 fn the_number_of_triangles_hit_is_exact() {
-    let mut rng = Rng::new(4);
+    let mut rng = Random::new(4);
     for mesh in Mesh::all() {
         let triangles = mesh.triangles();
         for i in 0..60 {
             let vertex = rng.pick(&mesh.vertices);
-            let origin = if i % 2 == 0 { to_grid(4.0 * rng.vector()) } else { mesh.random_inside(&mut rng) };
+            let origin = if i % 2 == 0 { to_grid(4.0 * rng.point()) } else { mesh.random_inside(&mut rng) };
             let target = if i % 3 == 0 { (vertex + rng.pick(&mesh.vertices)) / 2.0 } else { vertex };
             let ray = Ray::new(origin, target - origin).unwrap();
-            let truths: Vec<_> = triangles.iter().map(|triangle| Truth::new(&ray, triangle)).collect();
-            let expected = truths.iter().filter(|truth| truth.line.is_hit() && truth.ahead()).count();
+            let seen = |v: DVec3| sub(&vector(v), &vector(origin));
+            let truth = |triangle: &Triangle| Crossing::new(&vector(ray.direction()), triangle.vertices().map(seen));
+            let truths: Vec<Crossing> = triangles.iter().map(truth).collect();
+            let expected = truths.iter().filter(|truth| truth.place().is_hit() && truth.is_ahead()).count();
             assert_eq!(hits(&triangles, &ray), expected, "{} {ray:?}", mesh.name);
-            let expected = truths.iter().filter(|truth| truth.crosses).count();
+            let expected = truths.iter().filter(|truth| truth.crosses()).count();
             assert_eq!(crossings(&triangles, &ray), expected, "{} {ray:?}", mesh.name);
         }
     }
@@ -262,14 +264,14 @@ fn the_number_of_triangles_hit_is_exact() {
 /// From outside, a ray at a vertex or an edge may pass through or only touch: crossings are even, on a convex mesh 0 or 2.
 #[test]
 fn rays_from_outside_cross_an_even_number_of_times() {
-    let mut rng = Rng::new(5);
+    let mut rng = Random::new(5);
     for mesh in Mesh::all() {
         let triangles = mesh.triangles();
         let (mut touched, mut passed) = (0, 0);
-        for i in 0..cases() / 20 {
+        for i in 0..cases(LONG) / 20 {
             let vertex = rng.pick(&mesh.vertices);
             let target = if i % 2 == 0 { vertex } else { (vertex + rng.pick(&mesh.vertices)) / 2.0 };
-            let mut away = rng.vector();
+            let mut away = rng.point();
             if i % 4 < 2 {
                 away.z = 0.0; // in the planes of the cube's caps, past the apex of the fan
             }
@@ -335,12 +337,12 @@ fn all_rays_of_a_panorama_from_inside_hit() {
 /// A ray from outside through the middle: entry and exit are both found, in order.
 #[test]
 fn entry_and_exit_are_both_found() {
-    let mut rng = Rng::new(6);
+    let mut rng = Random::new(6);
     let mesh = Mesh::icosphere(2);
     let triangles = mesh.triangles();
-    for _ in 0..cases() / 20 {
-        let origin = 100.0 * rng.vector().normalize();
-        let ray = Ray::new(origin, 0.5 * rng.vector() - origin).unwrap();
+    for _ in 0..cases(LONG) / 20 {
+        let origin = 100.0 * rng.point().normalize();
+        let ray = Ray::new(origin, 0.5 * rng.point() - origin).unwrap();
         let mut t: Vec<f64> = triangles.iter().filter_map(|triangle| triangle.closest(&ray, ALL)).collect();
         t.sort_by(f64::total_cmp);
         t.dedup();

@@ -260,11 +260,8 @@ mod tests {
 
     #[test]
     fn every_level_gives_the_same_bits() {
-        let mut state = 1_u64;
-        let mut unit = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * (-53.0_f64).exp2()
-        };
+        let mut random = oracle::Random::new(1);
+        let mut unit = || random.share();
         for count in [2, 3, 8, 9, 64, 65, 3000] {
             for round in 0..200 {
                 let grid = if round % 2 == 0 { 1e9 } else { 4.0 };
@@ -321,11 +318,8 @@ mod tests {
         assert!(enclosing_sphere(&ordinary).is_some());
         assert_eq!(stage::decisions()[..3], [1, 0, 0]);
         // Where a sphere touches a larger one from inside, but for rounding, the support is in doubt.
-        let mut state = 3_u64;
-        let mut unit = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * (-53.0_f64).exp2()
-        };
+        let mut random = oracle::Random::new(3);
+        let mut unit = || random.share();
         for _ in 0..1000 {
             let (big, radius) = (DVec3::new(unit(), unit(), unit()), 0.5 * unit());
             let mut set = vec![Sphere::new(big, 1.0).unwrap()];
@@ -342,11 +336,8 @@ mod tests {
 
     /// Numbers in 0..1.
     fn units() -> impl FnMut() -> f64 {
-        let mut state = 4_u64;
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * (-53.0_f64).exp2()
-        }
+        let mut random = oracle::Random::new(4);
+        move || random.share()
     }
 
     /// So many spheres of this size: points, equal balls, any balls, or on a grid with reaches that are whole numbers.

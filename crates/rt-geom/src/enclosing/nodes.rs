@@ -376,11 +376,8 @@ mod tests {
     }
 
     fn leaves(count: usize, kind: usize) -> Vec<Sphere> {
-        let mut state = 5_u64;
-        let mut unit = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * (-53.0_f64).exp2()
-        };
+        let mut random = oracle::Random::new(5);
+        let mut unit = || random.share();
         let mut leaves: Vec<Sphere> = (0..count)
             .map(|_| {
                 let center = DVec3::new(unit(), unit(), unit());

@@ -380,11 +380,8 @@ mod tests {
 
     /// Blocks of spheres around the origin with radii made of numbers in 0..1.
     fn blocks(radius: impl Fn(f64) -> f64) -> Vec<Sphere> {
-        let mut state = 5_u64;
-        let mut unit = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * (-53.0_f64).exp2()
-        };
+        let mut random = oracle::Random::new(5);
+        let mut unit = || random.share();
         (0..BLOCK * 50)
             .map(|_| {
                 let center = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5);

@@ -259,24 +259,13 @@ fn integer_side(sphere: &Sphere, point: DVec3) -> Ordering {
 #[cfg(test)]
 mod tests {
     use fearless_simd::Fallback;
+    use oracle::Random;
 
     use super::super::filter::filter;
     use super::super::finish::rounded;
     use super::*;
     use crate::ray::FilterVerdict;
     use crate::stage::decisions;
-
-    /// Numbers in -1..1 from a fixed seed (splitmix64).
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(random(state), random(state), random(state))
-    }
 
     /// How many cases each stage has decided.
     #[derive(Debug, Default)]
@@ -345,12 +334,12 @@ mod tests {
 
     #[test]
     fn benign_rays_never_leave_the_first_stages() {
-        let (mut stages, state) = (Stages::default(), &mut 1);
+        let (mut stages, rng) = (Stages::default(), &mut Random::new(1));
         for _ in 0..4096 {
-            let center = 10.0 * vector(state);
-            let sphere = Sphere::new(center, 3.0 * random(state).abs()).unwrap();
-            let origin = 10.0 * vector(state);
-            let ray = Ray::new(origin, center + 1.5 * sphere.radius * vector(state) - origin).unwrap();
+            let center = 10.0 * rng.point();
+            let sphere = Sphere::new(center, 3.0 * rng.uniform().abs()).unwrap();
+            let origin = 10.0 * rng.point();
+            let ray = Ray::new(origin, center + 1.5 * sphere.radius * rng.point() - origin).unwrap();
             stages.count(&sphere, &ray);
         }
         assert!(stages.filter > 1000 && stages.newton > 1000, "{stages:?}");
@@ -359,16 +348,16 @@ mod tests {
 
     #[test]
     fn every_stage_decides_hard_cases() {
-        let (mut stages, state) = (Stages::default(), &mut 2);
+        let (mut stages, rng) = (Stages::default(), &mut Random::new(2));
         for i in 0..4096 {
             // grazing within some rounding errors, from more and more radii away
             let radius = 2f64.powi(-(i % 30));
-            let (mut origin, direction) = (vector(state), vector(state));
+            let (mut origin, direction) = (rng.point(), rng.point());
             if i % 4 == 0 {
                 origin.z *= 2f64.powi(-80); // no window of one limb
             }
-            let side = direction.cross(vector(state)).normalize();
-            let off = radius * (1.0 + 2f64.powi(-(20 + i % 40)) * random(state));
+            let side = direction.cross(rng.point()).normalize();
+            let off = radius * (1.0 + 2f64.powi(-(20 + i % 40)) * rng.uniform());
             let center = origin + direction + off * side;
             stages.count(&Sphere::new(center, radius).unwrap(), &Ray::new(origin, direction).unwrap());
         }
@@ -384,11 +373,11 @@ mod tests {
 
     #[test]
     fn the_side_is_decided_by_every_stage() {
-        let state = &mut 4;
+        let rng = &mut Random::new(4);
         let mut counts = [0; 3];
         for i in 0..4096 {
-            let center = vector(state);
-            let offset = vector(state).normalize() * (1.0 + f64::from(i % 8) * 1e-16);
+            let center = rng.point();
+            let offset = rng.point().normalize() * (1.0 + f64::from(i % 8) * 1e-16);
             let (sphere, point) = (Sphere::new(center, 1.0).unwrap(), center + offset);
             let w = point - center;
             let stage = if (w.length_squared() - 1.0).abs() > 14.0 * U {

@@ -165,44 +165,30 @@ fn residual<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, t: f6
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::Fallback;
-
-    use crate::reference::sphere::Equation;
-    use crate::reference::{Exact, exact};
-    use glam::DVec3;
-    use rt_math::Roots;
     use std::cmp::Ordering;
 
-    use super::super::exact;
+    use fearless_simd::Fallback;
+    use oracle::{Big, Random, exact, sphere_equation, sub, vector};
+    use rt_math::Roots;
+
+    use super::super::exact as integers;
     use super::super::filter::{closest, closest_kernel, filter, roots, roots_kernel};
     use super::*;
     use crate::ray::{FilterVerdict, PreparedRay};
 
-    /// Numbers in -1..1 from a fixed seed (splitmix64).
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(random(state), random(state), random(state))
-    }
-
     /// A sphere and a ray at it, from up to 2^20 radii away.
-    fn case(state: &mut u64, i: i32) -> (Sphere, Ray) {
-        let (origin, center) = (10.0 * vector(state), vector(state));
+    fn case(rng: &mut Random, i: i32) -> (Sphere, Ray) {
+        let (origin, center) = (10.0 * rng.point(), rng.point());
         let sphere = Sphere::new(center, 2f64.powi(-(i % 20))).unwrap();
-        let target = center + 0.5 * sphere.radius * vector(state);
+        let target = center + 0.5 * sphere.radius * rng.point();
         (sphere, Ray::new(origin, target - origin).unwrap())
     }
 
     #[test]
     fn lanes_and_plain_arithmetic_give_the_same_roots() {
-        let state = &mut 3;
+        let rng = &mut Random::new(3);
         for i in 0..4096 {
-            let (sphere, ray) = case(state, i);
+            let (sphere, ray) = case(rng, i);
             let level = Fallback::new();
             // What this processor has, plain arithmetic, and fused multiply-add in software.
             let all = roots(&sphere, &ray);
@@ -217,12 +203,12 @@ mod tests {
 
     #[test]
     fn the_bounds_of_a_candidate_hold_its_t() {
-        let state = &mut 4;
+        let rng = &mut Random::new(4);
         for i in 0..4096 {
-            let (sphere, ray) = case(state, i);
+            let (sphere, ray) = case(rng, i);
             let whole = PreparedRay::new(&ray, 0.0..f64::INFINITY);
             let bounds = sphere.candidate::<true>(&whole, f64::INFINITY).unwrap();
-            let Roots::Two(near, _) = exact::roots(&sphere, &ray) else { panic!("{sphere:?} {ray:?}") };
+            let Roots::Two(near, _) = integers::roots(&sphere, &ray) else { panic!("{sphere:?} {ray:?}") };
             assert!(bounds.low <= near && near <= bounds.high, "{sphere:?} {ray:?} {bounds:?} {near}");
             assert!(bounds.low < bounds.high);
         }
@@ -231,29 +217,31 @@ mod tests {
     /// enough that neither could be 2^7 times smaller.
     #[test]
     fn the_residual_and_one_step_keep_their_bounds() {
-        let state = &mut 5;
+        let rng = &mut Random::new(5);
         let mut steps = 0;
         for i in 0..6000 {
-            let radius = 1.0 + random(state).abs();
-            let (center, direction) = (vector(state), vector(state));
-            let side = direction.cross(vector(state)).normalize();
-            let off = radius * (1.0 - 2f64.powi(-(i % 31)) * random(state).abs());
-            let along = radius * 2f64.powi(i % 11) * random(state);
+            let radius = 1.0 + rng.uniform().abs();
+            let (center, direction) = (rng.point(), rng.point());
+            let side = direction.cross(rng.point()).normalize();
+            let off = radius * (1.0 - 2f64.powi(-(i % 31)) * rng.uniform().abs());
+            let along = radius * 2f64.powi(i % 11) * rng.uniform();
             let sphere = Sphere::new(center, radius).unwrap();
             let ray = Ray::new(center + off * side + along * direction, direction).unwrap();
             let FilterVerdict::Crosses(crossing) = filter::<false>(&sphere, &ray) else { continue };
-            let (roots, truth) = (crossing.approximation(), Equation::new(&ray, &sphere));
+            let offset = sub(&vector(ray.origin()), &vector(center));
+            let truth = sphere_equation(&vector(ray.direction()), &offset, &exact(radius));
+            let roots = crossing.approximation();
             for place in [WhichRoot::Near, WhichRoot::Far] {
                 let simd = Fallback::new();
                 let Some((t, step, error)) = refined::<false, _>(simd, &sphere, &ray, &crossing, &roots, place) else {
                     continue;
                 };
                 steps += 1;
-                let off = &truth.value(&exact(t)) - &exact(residual::<false, _>(simd, &sphere, &ray, t));
+                let off = truth.value(&exact(t)) - exact(residual::<false, _>(simd, &sphere, &ray, t));
                 let bound = exact(2.0 * RESIDUAL_ERROR * crossing.squares);
-                assert_eq!(off.abs().cmp(&bound), Ordering::Less, "residual: {sphere:?} {ray:?}");
-                let (root, error) = (&exact(t) + &exact(step), exact(error));
-                let compare = |x: &Exact| truth.compare(place == WhichRoot::Far, x);
+                assert!(off < bound && -off < bound, "residual: {sphere:?} {ray:?}");
+                let (root, error) = (exact(t) + exact(step), exact(error));
+                let compare = |x: &Big| truth.compare(place == WhichRoot::Far, x);
                 assert_eq!(compare(&(&root - &error)), Ordering::Greater, "step: {sphere:?} {ray:?}");
                 assert_eq!(compare(&(&root + &error)), Ordering::Less, "step: {sphere:?} {ray:?}");
             }

@@ -363,27 +363,17 @@ pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]
 
 #[cfg(test)]
 mod tests {
+    use oracle::Random;
+
     use super::super::filter::{again, filter};
     use super::super::finish::Refined;
     use super::*;
     use crate::ray::FilterVerdict;
 
-    /// Numbers in -1..1 from a fixed seed (splitmix64).
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(random(state), random(state), random(state))
-    }
-
     /// A triangle and a ray aimed at the place with these weights of the second and third vertex.
-    fn case(state: &mut u64, v: f64, w: f64) -> (Triangle, Ray) {
-        let [a, b, c] = [vector(state), vector(state), vector(state)];
-        let origin = 5.0 * vector(state);
+    fn case(rng: &mut Random, v: f64, w: f64) -> (Triangle, Ray) {
+        let [a, b, c] = [rng.point(), rng.point(), rng.point()];
+        let origin = 5.0 * rng.point();
         let direction = a + v * (b - a) + w * (c - a) - origin;
         (Triangle::new(a, b, c).unwrap(), Ray::new(origin, direction).unwrap())
     }
@@ -459,10 +449,10 @@ mod tests {
 
     #[test]
     fn benign_rays_never_leave_the_first_stages() {
-        let (mut stages, state) = (Stages::default(), &mut 1);
+        let (mut stages, rng) = (Stages::default(), &mut Random::new(1));
         for _ in 0..4096 {
-            let (v, w) = (0.5 * random(state) + 0.4, 0.5 * random(state) + 0.4);
-            let (triangle, ray) = case(state, v, w);
+            let (v, w) = (0.5 * rng.uniform() + 0.4, 0.5 * rng.uniform() + 0.4);
+            let (triangle, ray) = case(rng, v, w);
             stages.count(&triangle, &ray);
         }
         assert_eq!((stages.filter, stages.not_rounded), (4096, 0), "{stages:?}");
@@ -471,13 +461,13 @@ mod tests {
 
     #[test]
     fn every_stage_decides_hard_cases() {
-        let (mut stages, state) = (Stages::default(), &mut 2);
+        let (mut stages, rng) = (Stages::default(), &mut Random::new(2));
         for i in 0..4096 {
             // Within less and less of an edge, with numbers in a window of one limb, of two, and in none.
-            let (v, w) = (random(state), 2f64.powi(-(i % 60)) * random(state));
-            let [mut a, b, c] = [vector(state), vector(state), vector(state)];
+            let (v, w) = (rng.uniform(), 2f64.powi(-(i % 60)) * rng.uniform());
+            let [mut a, b, c] = [rng.point(), rng.point(), rng.point()];
             a.z *= [1.0, 1.0, 2f64.powi(-40), 2f64.powi(-200)][i as usize % 4];
-            let origin = 5.0 * vector(state);
+            let origin = 5.0 * rng.point();
             let direction = a + v * (b - a) + w * (c - a) - origin;
             stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, direction).unwrap());
         }

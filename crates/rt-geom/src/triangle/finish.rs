@@ -199,33 +199,21 @@ impl<'a> Refined<'a> {
 mod tests {
     use std::cmp::Ordering;
 
-    use super::super::exact;
+    use oracle::{Big, Random, cross, dot, exact, sign, sub, vector};
+
+    use super::super::exact as integers;
     use super::super::filter::{again, both_kernel, closest_kernel, filter, weights_kernel};
     use super::*;
     use crate::ray::{FilterVerdict, PreparedRay};
-    use crate::reference::triangle::Truth;
-    use crate::reference::{self, Exact, exact, minus};
-
-    /// Numbers in -1..1 from a fixed seed (splitmix64).
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(state: &mut u64) -> DVec3 {
-        DVec3::new(random(state), random(state), random(state))
-    }
 
     #[test]
     fn fused_and_plain_arithmetic_give_the_same_values() {
-        let state = &mut 3;
+        let rng = &mut Random::new(3);
         let mut hits = 0;
         for _ in 0..4000 {
-            let [a, b, c] = [vector(state), vector(state), vector(state)];
-            let target = a + random(state).abs() * (b - a) + random(state).abs() * (c - a);
-            let origin = 5.0 * vector(state);
+            let [a, b, c] = [rng.point(), rng.point(), rng.point()];
+            let target = a + rng.uniform().abs() * (b - a) + rng.uniform().abs() * (c - a);
+            let origin = 5.0 * rng.point();
             let (triangle, ray) = (Triangle::new(a, b, c).unwrap(), Ray::new(origin, target - origin).unwrap());
             let end = f64::INFINITY;
             let t = closest_kernel::<false>(&triangle, &ray, 0.0, end);
@@ -242,19 +230,19 @@ mod tests {
 
     #[test]
     fn the_bounds_of_a_candidate_hold_its_t() {
-        let state = &mut 4;
+        let rng = &mut Random::new(4);
         let mut hits = 0;
         for i in 0..4000 {
             let size = 2f64.powi(-(i % 20));
-            let a = vector(state);
-            let (b, c) = (a + size * vector(state), a + size * vector(state));
-            let target = a + 0.5 * random(state).abs() * (b - a) + 0.5 * random(state).abs() * (c - a);
-            let origin = 5.0 * vector(state);
+            let a = rng.point();
+            let (b, c) = (a + size * rng.point(), a + size * rng.point());
+            let target = a + 0.5 * rng.uniform().abs() * (b - a) + 0.5 * rng.uniform().abs() * (c - a);
+            let origin = 5.0 * rng.point();
             let ray = Ray::new(origin, target - origin).unwrap();
             let triangle = Triangle::new(a, b, c).unwrap();
             let whole = PreparedRay::new(&ray, f64::NEG_INFINITY..f64::INFINITY);
             let Some(bounds) = triangle.candidate::<true>(&whole, f64::INFINITY) else { continue };
-            let t = exact::integer_t(&triangle, &ray);
+            let t = integers::integer_t(&triangle, &ray);
             assert!(bounds.low <= t && t <= bounds.high, "{triangle:?} {ray:?} {bounds:?}");
             hits += usize::from(bounds.low < bounds.high);
         }
@@ -264,14 +252,14 @@ mod tests {
     /// The ray is within 2^-12 to 2^-24 of parallel to the plane: one step is not enough, two are.
     #[test]
     fn a_second_step_decides_nearly_parallel_rays() {
-        let state = &mut 5;
+        let rng = &mut Random::new(5);
         let (mut first, mut second, mut hits) = (0, 0, 0);
         for i in 0..2000 {
-            let [a, b, c] = [vector(state), vector(state), vector(state)];
+            let [a, b, c] = [rng.point(), rng.point(), rng.point()];
             let triangle = Triangle::new(a, b, c).unwrap();
-            let along = random(state) * (b - a) + random(state) * (c - a);
-            let target = a + 0.4 * random(state).abs() * (b - a) + 0.4 * random(state).abs() * (c - a);
-            let lean = 2f64.powi(-12 - i % 12) * vector(state);
+            let along = rng.uniform() * (b - a) + rng.uniform() * (c - a);
+            let target = a + 0.4 * rng.uniform().abs() * (b - a) + 0.4 * rng.uniform().abs() * (c - a);
+            let lean = 2f64.powi(-12 - i % 12) * rng.point();
             let ray = Ray::new(target - along - lean, along + lean).unwrap();
             let FilterVerdict::Crosses(crossing) = filter::<false>(&triangle, &ray) else { continue };
             hits += 1;
@@ -280,8 +268,8 @@ mod tests {
                 first += 1;
             } else if let (Some(t), Some(weights)) = again(&triangle, &ray, refined.corrected::<false>()) {
                 second += 1;
-                assert_eq!(t, exact::integer_t(&triangle, &ray), "{triangle:?} {ray:?}");
-                assert_eq!(Some(weights), exact::integer_weights(&triangle, &ray), "{triangle:?} {ray:?}");
+                assert_eq!(t, integers::integer_t(&triangle, &ray), "{triangle:?} {ray:?}");
+                assert_eq!(Some(weights), integers::integer_weights(&triangle, &ray), "{triangle:?} {ray:?}");
             }
         }
         assert!(hits > 1500 && first < hits / 2 && second > hits / 3, "{hits} {first} {second}");
@@ -290,59 +278,60 @@ mod tests {
     /// nearly lie in the plane. Neither constant could be 2^7 times smaller, nor the bounds of a candidate.
     #[test]
     fn the_rest_and_the_steps_keep_their_bounds() {
-        let state = &mut 6;
+        let rng = &mut Random::new(6);
         let mut hits = 0;
         for i in 0..24_000 {
-            let place = f64::from([0, 10, 1000][i % 3]) * vector(state);
-            let [a, b, c] = [0; 3].map(|_| place + vector(state));
+            let place = f64::from([0, 10, 1000][i % 3]) * rng.point();
+            let [a, b, c] = [0; 3].map(|_| place + rng.point());
             let triangle = Triangle::new(a, b, c).unwrap();
-            let mut inside = || 0.4 * random(state).abs() * (b - a) + 0.4 * random(state).abs() * (c - a);
+            let mut inside = || 0.4 * rng.uniform().abs() * (b - a) + 0.4 * rng.uniform().abs() * (c - a);
             let (target, along) = (a + inside(), inside());
-            let lean = 2f64.powi(-i32::try_from(i % 24).unwrap()) * vector(state);
+            let lean = 2f64.powi(-i32::try_from(i % 24).unwrap()) * rng.point();
             let ray = Ray::new(target - along - lean, along + lean).unwrap();
             let FilterVerdict::Crosses(crossing) = filter::<false>(&triangle, &ray) else { continue };
             let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
             hits += 1;
             let context = || format!("{triangle:?} {ray:?}");
-            let below = |x: Exact, bound: f64| x.abs().cmp(&exact(bound)) == Ordering::Less;
+            let below = |x: Big, bound: f64| x < exact(bound) && -x < exact(bound);
 
             // The points in exact arithmetic, relative to the first vertex.
-            let (at, d) = (reference::vector(a), reference::vector(ray.direction()));
-            let [s, e, f] = [ray.origin(), b, c].map(|point| minus(&reference::vector(point), &at));
+            let (at, d) = (vector(a), vector(ray.direction()));
+            let [s, e, f] = [ray.origin(), b, c].map(|point| sub(&vector(point), &at));
             let [t, beta, gamma] = [refined.t, refined.weights[1], refined.weights[2]].map(exact);
             for i in 0..3 {
-                let rest = &(&s[i] + &(&t * &d[i])) - &(&(&beta * &e[i]) + &(&gamma * &f[i]));
+                let rest = &s[i] + &t * &d[i] - (&beta * &e[i] + &gamma * &f[i]);
                 let bound = REST_ERROR * (max_abs(a) + crossing.size) + 2.1 * U * refined.rest[i].abs();
-                assert!(below(&rest - &exact(refined.rest[i]), bound), "rest: {}", context());
+                assert!(below(rest - exact(refined.rest[i]), bound), "rest: {}", context());
             }
 
             // Solving for the rest as computed: t' = -r . (e x f) / sum, β' = r . (d x f) / -sum, γ' = r . (e x d) / -sum.
-            let truth = Truth::new(&ray, &triangle);
+            let origin = vector(ray.origin());
+            let truth = oracle::Crossing::new(&d, [a, b, c].map(|vertex| sub(&vector(vertex), &origin)));
             let TriangleCrossing { edge, sum, .. } = crossing;
-            let (rest, n) = (reference::vector(refined.rest), reference::cross(&e, &f));
+            let (rest, n) = (vector(refined.rest), cross(&e, &f));
             let length = refined.rest.x.abs() + refined.rest.y.abs() + refined.rest.z.abs();
             let error = SOLUTION_ERROR * (ray.reach() * edge * edge / sum) * length;
             let (step, t_error) = refined.t_step::<false>();
-            let left = &(&exact(step) * &truth.slope) + &reference::dot(&rest, &n);
+            let left = exact(step) * &truth.slope + dot(&rest, &n);
             assert!(below(left, edge * edge * error), "step of t: {}", context());
             let weights = refined.weight_steps::<false>();
-            let normals = [reference::cross(&f, &d), reference::cross(&d, &e)];
+            let normals = [cross(&f, &d), cross(&d, &e)];
             for i in 0..2 {
-                let left = &(&exact(weights[i + 1].0) * &truth.slope) - &reference::dot(&rest, &normals[i]);
+                let left = exact(weights[i + 1].0) * &truth.slope - dot(&rest, &normals[i]);
                 assert!(below(left, 2.0 * edge * ray.reach() * error), "step of a weight: {}", context());
             }
 
             // The corrected values; times the slope, which is the sum of the volumes.
-            let left = &(&(&t + &exact(step)) * &truth.slope) - &truth.height;
+            let left = (&t + exact(step)) * &truth.slope - &truth.height;
             assert!(below(left, 1.01 * sum * t_error), "t: {}", context());
             for (i, (step, error)) in weights.into_iter().enumerate() {
-                let corrected = &exact(refined.weights[i]) + &exact(step);
-                let left = &(&corrected * &truth.slope) - &truth.volumes[i];
+                let corrected = exact(refined.weights[i]) + exact(step);
+                let left = corrected * &truth.slope - &truth.volumes[i];
                 assert!(below(left, 1.01 * sum * error), "weight {i}: {}", context());
             }
             let (low, high) = crossing.bounds(&ray);
-            let compare = |x: f64| (&exact(x) * &truth.slope).cmp(&truth.height);
-            let (low, high) = if truth.slope.sign() == Ordering::Less { (high, low) } else { (low, high) };
+            let compare = |x: f64| (exact(x) * &truth.slope).cmp(&truth.height);
+            let (low, high) = if sign(&truth.slope) == Ordering::Less { (high, low) } else { (low, high) };
             assert!(compare(low) == Ordering::Less && compare(high) == Ordering::Greater, "{}", context());
         }
         assert!(hits > 20_000, "{hits}");
