@@ -1,9 +1,10 @@
 //! Every kind of PNG, JPEG and TIFF is either decoded sample by sample or refused by name.
 
-use std::error::Error;
 use std::fs;
 use std::path::Path;
 
+use oracle::files::{folder, full_message};
+use oracle::images::{Tag, crc32, tiff, tiff_in_chunks};
 use png::{BitDepth, ColorType, Encoder};
 use rt_io::ppm::{self, Encoding};
 use rt_io::{DecodeError, Limits, decode_image, read_image};
@@ -13,14 +14,6 @@ const PROGRESSIVE: &[u8] = include_bytes!("images/progressive.jpg");
 
 fn decode(bytes: &[u8]) -> Result<rt_io::Decoded, DecodeError> {
     decode_image(bytes, &Limits::default())
-}
-
-/// The message with all its causes.
-fn full_message(error: &dyn Error) -> String {
-    match error.source() {
-        Some(source) => format!("{error}: {}", full_message(source)),
-        None => error.to_string(),
-    }
 }
 
 fn message(bytes: &[u8]) -> String {
@@ -70,53 +63,6 @@ fn grey_becomes_rgb_and_alpha_is_dropped_with_a_word() {
     }
 }
 
-/// A TIFF of one strip that holds `raster`, with these tags besides the strip's own; values are 16-bit numbers.
-fn tiff(tags: &[(u16, &[u16])], raster: &[u8]) -> Vec<u8> {
-    tiff_in_chunks(tags, &[raster], [273, 279])
-}
-
-/// A TIFF whose chunks, strips or tiles, have their offsets and lengths under these tags.
-fn tiff_in_chunks(tags: &[(u16, &[u16])], chunks: &[&[u8]], [offsets, lengths]: [u16; 2]) -> Vec<u8> {
-    let raster = chunks.concat();
-    let mut entries: Vec<(u16, u16, Vec<u8>)> = Vec::new(); // tag, type, value
-    for (tag, values) in tags {
-        entries.push((*tag, 3, values.iter().flat_map(|value| value.to_le_bytes()).collect()));
-    }
-    let long = |value: usize| u32::try_from(value).unwrap().to_le_bytes();
-    let mut at = 8;
-    let (mut places, mut sizes) = (Vec::new(), Vec::new());
-    for chunk in chunks {
-        places.extend(long(at));
-        sizes.extend(long(chunk.len()));
-        at += chunk.len();
-    }
-    entries.extend([(offsets, 4, places), (lengths, 4, sizes)]);
-    entries.sort();
-
-    let directory = (8 + raster.len()).next_multiple_of(2);
-    let mut bytes = [b"II*\0", &long(directory)[..], &raster].concat();
-    bytes.resize(directory, 0);
-    let mut beyond = directory + 2 + 12 * entries.len() + 4;
-    bytes.extend(u16::try_from(entries.len()).unwrap().to_le_bytes());
-    for (tag, kind, value) in &entries {
-        bytes.extend(tag.to_le_bytes());
-        bytes.extend(kind.to_le_bytes());
-        bytes.extend(long(value.len() / if *kind == 3 { 2 } else { 4 }));
-        if value.len() <= 4 {
-            bytes.extend(value);
-            bytes.resize(bytes.len() + 4 - value.len(), 0);
-        } else {
-            bytes.extend(long(beyond));
-            beyond += value.len();
-        }
-    }
-    bytes.extend([0; 4]);
-    for (_, _, value) in entries.iter().filter(|(_, _, value)| value.len() > 4) {
-        bytes.extend(value);
-    }
-    bytes
-}
-
 const WIDTH: u16 = 256;
 const HEIGHT: u16 = 257;
 const BITS: u16 = 258;
@@ -150,7 +96,7 @@ fn a_tiff_is_turned_upright() {
         (8, 2, [3, 6, 2, 5, 1, 4]),
     ];
     for (orientation, width, reds) in expected {
-        let tags: &[(u16, &[u16])] = &[
+        let tags: &[Tag<'_>] = &[
             (WIDTH, &[3]),
             (HEIGHT, &[2]),
             (BITS, &[8, 8, 8]),
@@ -172,19 +118,19 @@ fn a_tiff_is_turned_upright() {
 
 #[test]
 fn kinds_of_tiff_are_read_or_refused_by_name() {
-    let kind = |bits: &[u16], photometric: u16, more: &[(u16, &[u16])], raster: &[u8]| {
+    let kind = |bits: &[u16], photometric: u16, more: &[Tag<'_>], raster: &[u8]| {
         let samples = [u16::try_from(bits.len()).unwrap()];
         let photometric = [photometric];
-        let mut tags: Vec<(u16, &[u16])> =
+        let mut tags: Vec<Tag<'_>> =
             vec![(WIDTH, &[2]), (HEIGHT, &[1]), (BITS, bits), (PHOTOMETRIC, &photometric), (SAMPLES, &samples)];
         tags.extend(more);
         decode(&tiff(&tags, raster))
     };
-    let read = |bits: &[u16], photometric, more: &[(u16, &[u16])], raster: &[u8]| {
+    let read = |bits: &[u16], photometric, more: &[Tag<'_>], raster: &[u8]| {
         let decoded = kind(bits, photometric, more, raster).unwrap();
         (decoded.pixmap.maxval(), decoded.pixmap.to_samples(), decoded.transparent)
     };
-    let refused = |bits: &[u16], photometric, more: &[(u16, &[u16])], raster: &[u8]| {
+    let refused = |bits: &[u16], photometric, more: &[Tag<'_>], raster: &[u8]| {
         full_message(&kind(bits, photometric, more, raster).expect_err("was read"))
     };
 
@@ -269,7 +215,7 @@ fn a_tiff_in_strips_tiles_and_planes_is_read_alike() {
                 }
             }
         }
-        let mut tags: Vec<(u16, &[u16])> = vec![
+        let mut tags: Vec<Tag<'_>> = vec![
             (WIDTH, std::slice::from_ref(&width)),
             (HEIGHT, std::slice::from_ref(&height)),
             (BITS, &[8; 3]),
@@ -331,13 +277,6 @@ fn a_png_whose_checksum_is_wrong_is_refused() {
     file[data + length - 1] ^= 1;
     let text = message(&file);
     assert!(text.starts_with("broken PNG: CRC error"), "{text}");
-}
-
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0_u32, |crc, byte| {
-        let step = |crc: u32, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
-        (0..8).fold(crc ^ u32::from(*byte), step)
-    })
 }
 
 /// Files of `cjpeg -sample` with what `djpeg` makes of them: rows alone halved; red, green and blue.
@@ -496,8 +435,8 @@ fn the_bound_on_pixels_per_byte_refuses_no_whole_file() {
 
 #[test]
 fn a_file_is_read_by_its_content_and_errors_name_it() {
-    let folder = std::env::temp_dir().join(format!("rt-io-decode-{}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
+    let folder = folder();
+    let folder = folder.path();
     let path = folder.join("misnamed.txt");
     let pixmap = decode(&rgb_png(1, 2, &[1, 2, 3, 4, 5, 6])).unwrap().pixmap;
     for encoding in [Encoding::Raw, Encoding::Plain] {
@@ -526,7 +465,7 @@ fn a_file_is_read_by_its_content_and_errors_name_it() {
         format!("cannot read the image {}: reading failed: No such file or directory (os error 2)", missing.display())
     );
     assert_eq!(
-        message(&folder, Limits::default()),
+        message(folder, Limits::default()),
         format!("cannot read the image {}: reading failed: Is a directory (os error 21)", folder.display())
     );
     // A file that is far too long for its limit is not taken into memory.
@@ -540,5 +479,4 @@ fn a_file_is_read_by_its_content_and_errors_name_it() {
             long.display()
         )
     );
-    fs::remove_dir_all(&folder).unwrap();
 }

@@ -7,6 +7,7 @@ use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use ::png::{BitDepth, ColorType, Encoder};
+use oracle::images::{Tag, black_jpeg, crc32, tiff};
 use rt_io::ppm::{self, Encoding};
 use rt_io::{Limits, Pixmap, decode_image, png};
 
@@ -62,12 +63,6 @@ fn peak_of<T>(work: impl FnOnce() -> T) -> (T, usize) {
 }
 
 const MOST: usize = 64 << 20;
-
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0_u32, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
-    })
-}
 
 /// A PNG of one pixel whose header claims another size, bit depth and colour type.
 fn png_that_claims(width: u32, height: u32, depth: u8, color: u8, padding: usize) -> Vec<u8> {
@@ -255,9 +250,8 @@ fn whole_pictures_take_what_the_limits_say() {
         check(&format!("PNG {color:?} {depth:?}"), &bytes, kept * PIXELS, kept * PIXELS);
     }
 
-    let size = [(ROWS as u16).to_be_bytes(), (COLUMNS as u16).to_be_bytes()].concat();
     for (progressive, grey) in [(false, false), (false, true), (true, false), (true, true)] {
-        let bytes = black_jpeg(&size, progressive, grey);
+        let bytes = black_jpeg([COLUMNS as u16, ROWS as u16], progressive, grey);
         let kept = if grey { PIXELS } else { 3 * PIXELS };
         // Two bytes a coefficient; its sizes are multiples of a block.
         let most = if progressive { 3 * kept } else { kept };
@@ -267,66 +261,7 @@ fn whole_pictures_take_what_the_limits_say() {
     // One bit, in one strip that packs to next to nothing.
     let row_bytes = COLUMNS.div_ceil(8);
     let packed: Vec<u8> = (0..row_bytes * ROWS / 125).flat_map(|_| [130, 0]).collect();
-    check("TIFF of one bit", &black_tiff(&packed), PIXELS + row_bytes * ROWS, PIXELS);
-}
-
-/// A JPEG whose coefficients are all zero: one code of one bit stands for nothing, be it a difference or the end of a block.
-fn black_jpeg(size: &[u8], progressive: bool, grey: bool) -> Vec<u8> {
-    let ids: &[u8] = if grey { &[1] } else { &[1, 2, 3] };
-    let count = ids.len() as u8;
-    let mut bytes = vec![0xff, 0xd8];
-    let mut segment = |marker: u8, data: &[u8]| {
-        bytes.extend([0xff, marker]);
-        bytes.extend((data.len() as u16 + 2).to_be_bytes());
-        bytes.extend(data);
-    };
-    segment(0xdb, &[&[0], &[1; 64][..]].concat());
-    let table: Vec<u8> = [&[1][..], &[0; 15], &[0]].concat();
-    segment(0xc4, &[&[0x00][..], &table, &[0x10], &table].concat());
-    let components: Vec<u8> = ids.iter().flat_map(|&id| [id, 0x11, 0]).collect();
-    segment(if progressive { 0xc2 } else { 0xc0 }, &[&[8][..], size, &[count], &components].concat());
-    let blocks = COLUMNS.div_ceil(8) * ROWS.div_ceil(8);
-    let mut scan = |ids: &[u8], band: [u8; 3], bits: usize| {
-        let selectors: Vec<u8> = ids.iter().flat_map(|&id| [id, 0]).collect();
-        let data = [&[ids.len() as u8][..], &selectors, &band].concat();
-        bytes.extend([0xff, 0xda]);
-        bytes.extend((data.len() as u16 + 2).to_be_bytes());
-        bytes.extend(data);
-        bytes.extend(vec![0; bits.div_ceil(8)]);
-    };
-    if progressive {
-        scan(ids, [0, 0, 0], blocks * ids.len());
-        for &id in ids {
-            scan(&[id], [1, 63, 0], blocks);
-        }
-    } else {
-        scan(ids, [0, 63, 0], 2 * blocks * ids.len());
-    }
-    bytes.extend([0xff, 0xd9]);
-    bytes
-}
-
-/// A TIFF of one bit, packed by runs of bytes, in one strip.
-fn black_tiff(packed: &[u8]) -> Vec<u8> {
-    let entries: [(u16, u32); 8] = [
-        (256, COLUMNS as u32),
-        (257, ROWS as u32),
-        (258, 1),
-        (259, 32773),
-        (262, 1),
-        (273, 8),
-        (278, ROWS as u32),
-        (279, packed.len() as u32),
-    ];
-    let padded = packed.len().next_multiple_of(2);
-    let mut bytes = [b"II*\0", &(8 + padded as u32).to_le_bytes()[..], packed].concat();
-    bytes.resize(8 + padded, 0);
-    bytes.extend((entries.len() as u16).to_le_bytes());
-    for (tag, value) in entries {
-        bytes.extend(tag.to_le_bytes());
-        bytes.extend([4, 0, 1, 0, 0, 0]);
-        bytes.extend(value.to_le_bytes());
-    }
-    bytes.extend([0; 4]);
-    bytes
+    let tags: [Tag<'_>; 5] =
+        [(256, &[COLUMNS as u16]), (257, &[ROWS as u16]), (258, &[1]), (259, &[32773]), (262, &[1])];
+    check("TIFF of one bit", &tiff(&tags, &packed), PIXELS + row_bytes * ROWS, PIXELS);
 }

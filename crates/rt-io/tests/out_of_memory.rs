@@ -1,25 +1,18 @@
 //! A picture for which the system has not enough memory is an error that says how much and what to do, and no abort.
 #![cfg(unix)]
 
-use std::error::Error;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use oracle::files::full_message;
+use oracle::images::{Tag, black_jpeg, tiff};
 use rt_io::{Limits, Pixmap, decode_image, png, read_image};
 
 /// The address space of a helper: less than what any of the pictures here takes, more than a test program.
 const KILOBYTES: &str = "400000";
-
-/// The message with all its causes.
-fn full_message(error: &dyn Error) -> String {
-    match error.source() {
-        Some(source) => format!("{error}: {}", full_message(source)),
-        None => error.to_string(),
-    }
-}
 
 /// Does nothing unless it is started by another test: reads an image, or writes one, and tells how that went.
 #[test]
@@ -66,8 +59,8 @@ fn large_png(path: &Path) {
 
 #[test]
 fn too_little_memory_is_an_error_that_names_file_size_and_remedy() {
-    let folder = std::env::temp_dir().join(format!("rt-io-memory-{}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
+    let folder = oracle::files::folder();
+    let folder = folder.path();
     let file = |name: &str, bytes: &[u8], length: u64| -> PathBuf {
         let path = folder.join(name);
         fs::write(&path, bytes).unwrap();
@@ -76,26 +69,10 @@ fn too_little_memory_is_an_error_that_names_file_size_and_remedy() {
     };
     // Files as long as they say, or long enough, but for the PNG full of nothing.
     let ppm = file("a.ppm", b"P6 16384 16384 255\n", 19 + (3 << 28));
-    // One code of one bit stands for no difference, and for the end of a block.
-    let mut jpeg = vec![0xff, 0xd8, 0xff, 0xdb, 0, 67, 0];
-    jpeg.extend([1; 64]);
-    for kind in [0x00, 0x10] {
-        jpeg.extend([0xff, 0xc4, 0, 20, kind, 1]);
-        jpeg.extend([0; 16]);
-    }
-    jpeg.extend([0xff, 0xc0, 0, 17, 8, 0x40, 0, 0x40, 0, 3, 1, 0x11, 0, 2, 0x11, 0, 3, 0x11, 0]);
-    jpeg.extend([0xff, 0xda, 0, 12, 3, 1, 0, 2, 0, 3, 0, 0, 63, 0]);
-    jpeg.resize(jpeg.len() + (3 << 20), 0);
-    jpeg.extend([0xff, 0xd9]);
+    let jpeg = black_jpeg([1 << 14; 2], false, false);
     let jpeg = file("a.jpg", &jpeg, jpeg.len() as u64);
-    // Grey in one strip: width, height, bits, kind of grey, offset, rows and bytes of the strip.
-    let tags = [(256, 1 << 14), (257, 1 << 14), (258, 8), (262, 1), (273, 8), (278, 1 << 14), (279, 1 << 20)];
-    let mut tiff = b"II*\0\x08\0\0\0\x07\0".to_vec();
-    for (tag, value) in tags {
-        tiff.extend([u16::to_le_bytes(tag), [4, 0], [1, 0], [0, 0]].concat());
-        tiff.extend(u32::to_le_bytes(value));
-    }
-    let tiff = file("a.tiff", &tiff, 1 << 20);
+    let tags: [Tag<'_>; 4] = [(256, &[1 << 14]), (257, &[1 << 14]), (258, &[8]), (262, &[1])];
+    let tiff = file("a.tiff", &tiff(&tags, &[0; 1 << 20]), 2 << 20);
     let png = folder.join("a.png");
     large_png(&png);
 
@@ -116,7 +93,6 @@ fn too_little_memory_is_an_error_that_names_file_size_and_remedy() {
     }
     let says = helper_says("write".as_ref()).unwrap();
     assert!(says.starts_with("Err(") && says.contains("memory"), "{says}");
-    fs::remove_dir_all(&folder).unwrap();
 }
 
 /// The other way round: with so little memory a picture that fits is read.

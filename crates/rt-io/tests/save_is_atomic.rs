@@ -2,7 +2,6 @@
 //! folder that cannot be written, with several savers at once.
 #![cfg(unix)]
 
-use std::error::Error;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
@@ -11,47 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use oracle::files::{folder, full_message, names};
 use rt_io::{SaveError, save_atomically};
-
-/// A folder of its own for a test, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("rt-io-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn join(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    /// The names of all files, sorted.
-    fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.0).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 fn save_text(path: &Path, text: &str) -> Result<(), SaveError> {
     save_atomically(path, |out| out.write_all(text.as_bytes()))
-}
-
-/// The message with all its causes.
-fn full_message(error: &dyn Error) -> String {
-    match error.source() {
-        Some(source) => format!("{error}: {}", full_message(source)),
-        None => error.to_string(),
-    }
 }
 
 const LENGTH: usize = 100_000;
@@ -112,8 +75,8 @@ const TIME_FOR_KILLS: Duration = Duration::from_secs(240);
 
 #[test]
 fn two_hundred_kills_leave_whole_files_and_at_most_one_temporary() {
-    let folder = Folder::new("kills");
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
     save_version(&target, 1).unwrap();
     let start = Instant::now();
     let (mut kills, mut advanced, mut left) = (0_u32, 0, 0);
@@ -129,20 +92,20 @@ fn two_hundred_kills_leave_whole_files_and_at_most_one_temporary() {
         assert!(lines.any(|line| line.unwrap() == "ready"));
         // From no time to the time of a few saves as they go now, in steps that have no common rhythm with them.
         let save = Instant::now();
-        save_version(&folder.join("other.ppm"), 1).unwrap();
+        save_version(&folder.path().join("other.ppm"), 1).unwrap();
         std::thread::sleep(save.elapsed() * (kills * 617 % 1000) / 300);
         child.kill().unwrap();
         child.wait().unwrap();
 
         kills += 1;
         advanced += usize::from(check_version(&target) != before);
-        fs::remove_file(folder.join("other.ppm")).unwrap();
-        let names = folder.names();
+        fs::remove_file(folder.path().join("other.ppm")).unwrap();
+        let names = names(folder.path());
         assert!(names.len() <= 2, "{names:?}");
         left += names.len() - 1;
     }
     save_version(&target, 1).unwrap();
-    assert_eq!(folder.names(), ["image.ppm"]);
+    assert_eq!(names(folder.path()), ["image.ppm"]);
 }
 
 /// Notes the calls that make a save last, in the file that `SPY_LOG` names, and lets them through.
@@ -177,9 +140,9 @@ int rename(const char *from, const char *to) {
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn the_bytes_reach_the_disk_before_they_get_the_name() {
     // No crash of a computer can be tried here, so the calls that guard against one are observed.
-    let folder = Folder::new("spy");
-    let [source, library, log] = ["spy.c", "spy.so", "log"].map(|name| folder.join(name));
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let [source, library, log] = ["spy.c", "spy.so", "log"].map(|name| folder.path().join(name));
+    let target = folder.path().join("image.ppm");
     fs::write(&source, SPY).unwrap();
     let mut compiler = Command::new("cc");
     compiler.args(["-shared", "-fPIC", "-o"]).args([&library, &source]).arg("-ldl");
@@ -202,8 +165,8 @@ fn the_bytes_reach_the_disk_before_they_get_the_name() {
 
 #[test]
 fn savers_at_once_do_not_disturb_each_other() {
-    let folder = Folder::new("at-once");
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
     save_version(&target, 1).unwrap();
     std::thread::scope(|scope| {
         for version in 2..8 {
@@ -216,12 +179,12 @@ fn savers_at_once_do_not_disturb_each_other() {
             });
         }
     });
-    assert_eq!(folder.names(), ["image.ppm"]);
+    assert_eq!(names(folder.path()), ["image.ppm"]);
 }
 
 #[test]
 fn only_dead_temporaries_of_the_same_target_are_removed() {
-    let folder = Folder::new("stale");
+    let folder = folder();
     let stale = ".a.ppm.0000000000000000.tmp";
     let others = [
         ".a.ppm.000000000000000g.tmp",
@@ -231,35 +194,38 @@ fn only_dead_temporaries_of_the_same_target_are_removed() {
         "a.ppm.0000000000000000.tmp",
     ];
     for name in others.iter().chain([&stale]) {
-        fs::write(folder.join(name), "").unwrap();
+        fs::write(folder.path().join(name), "").unwrap();
     }
-    fs::create_dir(folder.join(".a.ppm.00000000000000aa.tmp")).unwrap();
-    let living = File::create(folder.join(".a.ppm.00000000000000bb.tmp")).unwrap();
+    fs::create_dir(folder.path().join(".a.ppm.00000000000000aa.tmp")).unwrap();
+    let living = File::create(folder.path().join(".a.ppm.00000000000000bb.tmp")).unwrap();
     living.lock().unwrap();
-    save_text(&folder.join("a.ppm"), "new").unwrap();
+    save_text(&folder.path().join("a.ppm"), "new").unwrap();
     let mut expected = others.map(str::to_string).to_vec();
     expected.extend(["a.ppm", ".a.ppm.00000000000000aa.tmp", ".a.ppm.00000000000000bb.tmp"].map(str::to_string));
     expected.sort();
-    assert_eq!(folder.names(), expected);
+    assert_eq!(names(folder.path()), expected);
 }
 
 #[test]
 fn a_full_disk_leaves_the_old_file_and_no_temporary() {
     // A file system of 64 KiB that only this process and its children see.
-    let folder = Folder::new("full");
+    let folder = folder();
     let script = r#"mount -t tmpfs -o size=64k none "$RT_IO_FOLDER" && echo old > "$RT_IO_TARGET" && "$0" "$@";
         ls -A "$RT_IO_FOLDER"; cat "$RT_IO_TARGET""#;
-    let output =
-        helper(&["unshare", "--mount", "--map-root-user", "sh", "-c", script], "once", &folder.join("image.ppm"))
-            .env("RT_IO_FOLDER", &folder.0)
-            .stderr(Stdio::piped())
-            .output();
+    let output = helper(
+        &["unshare", "--mount", "--map-root-user", "sh", "-c", script],
+        "once",
+        &folder.path().join("image.ppm"),
+    )
+    .env("RT_IO_FOLDER", folder.path())
+    .stderr(Stdio::piped())
+    .output();
     match output {
         Ok(output) if output.stderr.is_empty() => {
             let text = String::from_utf8(output.stdout).unwrap();
             let message = format!(
                 "refused: {}: writing failed: No space left on device (os error 28)\n",
-                folder.join("image.ppm").display()
+                folder.path().join("image.ppm").display()
             );
             assert!(text.contains(&message), "{text}");
             assert!(text.ends_with("\nimage.ppm\nold\n"), "{text}");
@@ -268,18 +234,18 @@ fn a_full_disk_leaves_the_old_file_and_no_temporary() {
     }
 
     // The same by a limit on the size of a file, which any shell can set.
-    let target = folder.join("limited.ppm");
+    let target = folder.path().join("limited.ppm");
     save_text(&target, "old").unwrap();
     let says = helper_says(&["sh", "-c", r#"trap '' XFSZ; ulimit -f 64; exec "$0" "$@""#], &target).unwrap();
     assert_eq!(says, format!("refused: {}: writing failed: File too large (os error 27)", target.display()));
     assert_eq!(fs::read(&target).unwrap(), b"old");
-    assert_eq!(folder.names(), ["limited.ppm"]);
+    assert_eq!(names(folder.path()), ["limited.ppm"]);
 }
 
 #[test]
 fn an_error_of_the_closure_leaves_the_old_file_and_no_temporary() {
-    let folder = Folder::new("closure");
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
     save_text(&target, "old").unwrap();
     let error = save_atomically(&target, |out| {
         out.write_all(b"half")?;
@@ -289,42 +255,42 @@ fn an_error_of_the_closure_leaves_the_old_file_and_no_temporary() {
     let panic = std::panic::catch_unwind(|| save_atomically(&target, |_| panic!("on purpose")));
     assert!(panic.is_err());
     assert_eq!(fs::read(&target).unwrap(), b"old");
-    assert_eq!(folder.names(), ["image.ppm"]);
+    assert_eq!(names(folder.path()), ["image.ppm"]);
 }
 
 #[test]
 fn a_place_that_cannot_be_written_is_named() {
-    let folder = Folder::new("places");
-    let show = |name: &str| folder.join(name).display().to_string();
+    let folder = folder();
+    let show = |name: &str| folder.path().join(name).display().to_string();
     let message = |path: &Path| full_message(&save_text(path, "new").unwrap_err());
 
     assert_eq!(
-        message(&folder.join("missing/image.ppm")),
+        message(&folder.path().join("missing/image.ppm")),
         format!("{}: the folder {} does not exist; create it first", show("missing/image.ppm"), show("missing"))
     );
-    assert_eq!(message(&folder.0), format!("{} is a folder, not a file", folder.0.display()));
-    assert_eq!(message(&folder.join("new/")), format!("{} is a folder, not a file", show("new/")));
+    assert_eq!(message(folder.path()), format!("{} is a folder, not a file", folder.path().display()));
+    assert_eq!(message(&folder.path().join("new/")), format!("{} is a folder, not a file", show("new/")));
     assert_eq!(message(Path::new("")), ": cannot be written: an empty path names no file");
-    fs::write(folder.join("file"), "old").unwrap();
+    fs::write(folder.path().join("file"), "old").unwrap();
     assert_eq!(
-        message(&folder.join("file/image.ppm")),
+        message(&folder.path().join("file/image.ppm")),
         format!("{}: cannot be written: Not a directory (os error 20)", show("file/image.ppm"))
     );
-    symlink("circle", folder.join("circle")).unwrap();
+    symlink("circle", folder.path().join("circle")).unwrap();
     assert_eq!(
-        message(&folder.join("circle")),
+        message(&folder.path().join("circle")),
         format!("{}: cannot be written: too many symbolic links", show("circle"))
     );
     let long = "x".repeat(300);
-    assert!(message(&folder.join(&long)).contains("File name too long"));
-    assert_eq!(folder.names(), ["circle", "file"]);
-    assert_eq!(fs::read(folder.join("file")).unwrap(), b"old");
+    assert!(message(&folder.path().join(&long)).contains("File name too long"));
+    assert_eq!(names(folder.path()), ["circle", "file"]);
+    assert_eq!(fs::read(folder.path().join("file")).unwrap(), b"old");
 }
 
 #[test]
 fn a_read_only_folder_or_file_is_refused() {
-    let folder = Folder::new("read-only");
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
     save_text(&target, "old").unwrap();
     // The superuser may write anywhere, so the save is done by somebody else.
     let is_root = fs::metadata("/proc/self").is_ok_and(|metadata| metadata.uid() == 0);
@@ -333,17 +299,17 @@ fn a_read_only_folder_or_file_is_refused() {
 
     // A file that may be written in a folder that may not.
     fs::set_permissions(&target, PermissionsExt::from_mode(0o666)).unwrap();
-    fs::set_permissions(&folder.0, PermissionsExt::from_mode(0o555)).unwrap();
+    fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o555)).unwrap();
     let says = helper_says(wrapper, &target);
     assert!(says.is_none_or(|says| says == denied));
 
     // A file that may not be written in a folder that may.
     fs::set_permissions(&target, PermissionsExt::from_mode(0o444)).unwrap();
-    fs::set_permissions(&folder.0, PermissionsExt::from_mode(0o777)).unwrap();
+    fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o777)).unwrap();
     let says = helper_says(wrapper, &target);
     assert!(says.is_none_or(|says| says == denied));
     assert_eq!(fs::read(&target).unwrap(), b"old");
-    assert_eq!(folder.names(), ["image.ppm"]);
+    assert_eq!(names(folder.path()), ["image.ppm"]);
 }
 
 #[test]
@@ -355,10 +321,10 @@ fn devices_and_pipes_are_written_and_not_replaced() {
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
     }
 
-    let folder = Folder::new("devices");
-    let fifo = folder.join("fifo");
+    let folder = folder();
+    let fifo = folder.path().join("fifo");
     if Command::new("mkfifo").arg(&fifo).status().is_ok_and(|status| status.success()) {
-        let link = folder.join("link");
+        let link = folder.path().join("link");
         symlink("fifo", &link).unwrap();
         let reader = std::thread::spawn({
             let fifo = fifo.clone();
@@ -366,7 +332,7 @@ fn devices_and_pipes_are_written_and_not_replaced() {
         });
         save_text(&link, "through the pipe").unwrap();
         assert_eq!(reader.join().unwrap(), b"through the pipe");
-        assert_eq!(folder.names(), ["fifo", "link"]);
+        assert_eq!(names(folder.path()), ["fifo", "link"]);
     }
 
     // /dev/stdout is a pipe here, and below a file that holds something already.
@@ -377,7 +343,7 @@ fn devices_and_pipes_are_written_and_not_replaced() {
         assert!(child.wait().unwrap().success());
         assert_eq!(bytes.iter().filter(|byte| **byte == 2).count(), LENGTH);
 
-        let out = folder.join("out");
+        let out = folder.path().join("out");
         fs::write(&out, "kept").unwrap();
         let appending = File::options().append(true).open(&out).unwrap();
         let inode = fs::metadata(&out).unwrap().ino();
@@ -390,35 +356,35 @@ fn devices_and_pipes_are_written_and_not_replaced() {
 
 #[test]
 fn links_are_followed_and_permissions_kept() {
-    let folder = Folder::new("links");
-    let mode = |name: &str| fs::metadata(folder.join(name)).unwrap().permissions().mode() & 0o7777;
+    let folder = folder();
+    let mode = |name: &str| fs::metadata(folder.path().join(name)).unwrap().permissions().mode() & 0o7777;
 
     // A new file is like any other new file.
-    File::create(folder.join("ordinary")).unwrap();
-    save_text(&folder.join("new"), "new").unwrap();
+    File::create(folder.path().join("ordinary")).unwrap();
+    save_text(&folder.path().join("new"), "new").unwrap();
     assert_eq!(mode("new"), mode("ordinary"));
 
     // An old one keeps its mode.
     for bits in [0o600, 0o644, 0o666, 0o755] {
-        fs::set_permissions(folder.join("new"), PermissionsExt::from_mode(bits)).unwrap();
-        save_text(&folder.join("new"), "newer").unwrap();
+        fs::set_permissions(folder.path().join("new"), PermissionsExt::from_mode(bits)).unwrap();
+        save_text(&folder.path().join("new"), "newer").unwrap();
         assert_eq!(mode("new"), bits);
     }
 
     // A link, and a link to a link from another folder, stay links.
-    fs::create_dir(folder.join("inner")).unwrap();
-    symlink("new", folder.join("link")).unwrap();
-    symlink("../link", folder.join("inner/link")).unwrap();
-    save_text(&folder.join("inner/link"), "newest").unwrap();
-    assert!(fs::symlink_metadata(folder.join("link")).unwrap().is_symlink());
-    assert!(fs::symlink_metadata(folder.join("inner/link")).unwrap().is_symlink());
-    assert_eq!(fs::read(folder.join("new")).unwrap(), b"newest");
+    fs::create_dir(folder.path().join("inner")).unwrap();
+    symlink("new", folder.path().join("link")).unwrap();
+    symlink("../link", folder.path().join("inner/link")).unwrap();
+    save_text(&folder.path().join("inner/link"), "newest").unwrap();
+    assert!(fs::symlink_metadata(folder.path().join("link")).unwrap().is_symlink());
+    assert!(fs::symlink_metadata(folder.path().join("inner/link")).unwrap().is_symlink());
+    assert_eq!(fs::read(folder.path().join("new")).unwrap(), b"newest");
 
     // A link to nothing makes what it names.
-    symlink("created", folder.join("dangling")).unwrap();
-    save_text(&folder.join("dangling"), "there").unwrap();
-    assert_eq!(fs::read(folder.join("created")).unwrap(), b"there");
-    assert_eq!(folder.names(), ["created", "dangling", "inner", "link", "new", "ordinary"]);
+    symlink("created", folder.path().join("dangling")).unwrap();
+    save_text(&folder.path().join("dangling"), "there").unwrap();
+    assert_eq!(fs::read(folder.path().join("created")).unwrap(), b"there");
+    assert_eq!(names(folder.path()), ["created", "dangling", "inner", "link", "new", "ordinary"]);
 }
 
 /// Whether this process may give files away; the tests that need that say so otherwise.
@@ -443,10 +409,10 @@ fn set_access(path: &Path, (owner, group, mode): (u32, u32, u32)) {
 
 #[test]
 fn a_replaced_file_keeps_its_owner_group_and_mode() {
-    let folder = Folder::new("owner");
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
     save_text(&target, "old").unwrap();
-    let link = folder.join("link.ppm");
+    let link = folder.path().join("link.ppm");
     fs::hard_link(&target, &link).unwrap();
     save_text(&target, "new").unwrap();
     assert_eq!(fs::read(&link).unwrap(), b"old", "a hard link keeps the old bytes");
@@ -466,9 +432,9 @@ fn what_cannot_be_kept_grants_no_more() {
     if !is_root() {
         return;
     }
-    let folder = Folder::new("stranger");
-    let target = folder.join("image.ppm");
-    fs::set_permissions(&folder.0, PermissionsExt::from_mode(0o777)).unwrap();
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
+    fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o777)).unwrap();
     let stranger = ["setpriv", "--reuid=65534", "--regid=65533", "--clear-groups"];
     let member = ["setpriv", "--reuid=65534", "--regid=65533", "--groups=65532"];
     let cases: [(&[&str], _, _); 5] = [
@@ -492,14 +458,14 @@ fn what_cannot_be_kept_grants_no_more() {
 
 #[test]
 fn a_temporary_can_be_read_by_no_more_than_the_file() {
-    let folder = Folder::new("private");
-    let target = folder.join("image.ppm");
+    let folder = folder();
+    let target = folder.path().join("image.ppm");
     let during = || {
         let mut found = None;
         save_atomically(&target, |out| {
             out.write_all(b"new")?;
-            let temporary = folder.names().into_iter().find(|name| name.ends_with(".tmp")).unwrap();
-            found = Some(access(&folder.join(&temporary)).2);
+            let temporary = names(folder.path()).into_iter().find(|name| name.ends_with(".tmp")).unwrap();
+            found = Some(access(&folder.path().join(&temporary)).2);
             Ok(())
         })
         .unwrap();
@@ -518,12 +484,12 @@ fn a_temporary_can_be_read_by_no_more_than_the_file() {
 #[test]
 fn names_at_the_limit_and_not_in_unicode_are_saved() {
     use std::os::unix::ffi::OsStrExt;
-    let folder = Folder::new("names");
+    let folder = folder();
     let long = "é".repeat(127);
-    save_text(&folder.join(&long), "long").unwrap();
-    assert_eq!(fs::read(folder.join(&long)).unwrap(), b"long");
-    let odd = folder.0.join(OsStr::from_bytes(b"\xff.ppm"));
+    save_text(&folder.path().join(&long), "long").unwrap();
+    assert_eq!(fs::read(folder.path().join(&long)).unwrap(), b"long");
+    let odd = folder.path().join(OsStr::from_bytes(b"\xff.ppm"));
     save_text(&odd, "odd").unwrap();
     assert_eq!(fs::read(&odd).unwrap(), b"odd");
-    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 2);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
