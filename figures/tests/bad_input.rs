@@ -46,7 +46,7 @@ fn check(folder: &Path, before: usize, output: &Output, code: i32, message: &str
 fn check_files(list: &'static str, name: &str, arguments: &[&str], at_least: usize) {
     let cases = cases(list);
     assert!(cases.len() >= at_least, "{} cases", cases.len());
-    let folder = tempfile::tempdir().unwrap();
+    let folder = oracle::files::folder();
     for Case { claim, message, input } in cases {
         fs::write(folder.path().join(name), input).unwrap();
         check(folder.path(), 1, &figures(folder.path(), arguments), 1, message, claim);
@@ -81,7 +81,7 @@ fn a_bad_image_is_refused_with_its_byte_and_reason() {
 fn a_bad_command_line_is_refused_with_the_reason() {
     let cases = cases(include_str!("bad/commands.txt"));
     assert!(cases.len() >= 30, "{} cases", cases.len());
-    let folder = tempfile::tempdir().unwrap();
+    let folder = oracle::files::folder();
     for Case { claim, message, .. } in cases {
         let arguments: Vec<&str> = claim.split(' ').collect();
         let output = figures(folder.path(), &arguments);

@@ -5,9 +5,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use oracle::files::{folder, names};
 use rt_io::ppm;
 use serde_json::Value;
-use tempfile::TempDir;
 
 /// Runs the program in `folder` with these arguments and this standard input.
 fn run(folder: &Path, arguments: &[&str], input: &str) -> Output {
@@ -41,20 +41,9 @@ fn refusal(folder: &Path, arguments: &[&str], input: &str, code: i32) -> String 
     said
 }
 
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
-}
-
 /// The scene file of a figure, as it lies in the sources.
 fn scene(figure: u8) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/figure-{figure}.toml"))
-}
-
-fn files(folder: &Path) -> Vec<String> {
-    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    names
 }
 
 #[test]
@@ -98,7 +87,7 @@ fn all_draws_six_pictures_into_the_named_folder() {
     let folder = folder();
     stdout(folder.path(), &["all", "--size", "16x12", "-o", "new/pictures", "--quiet"]);
     let expected: Vec<String> = (1..=6).map(|figure| format!("figure-{figure}.ppm")).collect();
-    assert_eq!(files(&folder.path().join("new/pictures")), expected);
+    assert_eq!(names(&folder.path().join("new/pictures")), expected);
     for name in expected {
         let bytes = fs::read(folder.path().join("new/pictures").join(&name)).unwrap();
         assert!(bytes.starts_with(b"P6\n16 12\n255\n"), "{name}");
@@ -130,7 +119,7 @@ fn without_an_argument_the_number_comes_from_stdin() {
         let said = refusal(folder.path(), &[], answer, 2);
         assert_eq!(said, format!("error: expected the number of a figure, 1 to 6, or \"all\", found {quoted}\n"));
     }
-    assert!(files(folder.path()).is_empty(), "a wrong answer draws nothing");
+    assert!(names(folder.path()).is_empty(), "a wrong answer draws nothing");
 }
 
 #[test]
@@ -211,12 +200,12 @@ fn a_name_that_promises_what_is_not_written_is_refused_before_any_work() {
             )
         );
     }
-    assert_eq!(files(folder.path()), ["in.ppm"]);
+    assert_eq!(names(folder.path()), ["in.ppm"]);
 
     // A slash says what is meant, and so does a folder that is there.
     for out in ["all.ppm/", "all.ppm"] {
         stdout(folder.path(), &["all", "--size", "8x6", "-o", out, "--quiet"]);
-        assert_eq!(files(&folder.path().join("all.ppm")).len(), 6);
+        assert_eq!(names(&folder.path().join("all.ppm")).len(), 6);
     }
 }
 

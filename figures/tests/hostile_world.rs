@@ -2,8 +2,6 @@
 //! target is the old file or the new one, whole, and nothing else stays behind for long.
 #![cfg(unix)]
 
-mod kills;
-
 use std::fs;
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::os::unix::process::ExitStatusExt;
@@ -11,7 +9,8 @@ use std::process::Command;
 use std::thread::sleep;
 use std::time::Duration;
 
-use kills::{check_refusal, command, files, folder, kill_savers, long, names, succeed};
+use oracle::files::{files, folder, names};
+use oracle::kills::{check_refusal, command, kill_savers, long, succeed};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_figures");
 

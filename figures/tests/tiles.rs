@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use tempfile::TempDir;
+use oracle::files::folder;
 
 fn figures(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_figures")).args(arguments).current_dir(folder).output().unwrap()
@@ -26,10 +26,6 @@ fn refusal(folder: &Path, tiles: &[&str]) -> String {
 
 fn draw(folder: &Path, figure: &str, tile: &str, out: &str, more: &[&str]) {
     succeed(folder, &[&[figure, "--size", "40x30", "--tile", tile, "-o", out, "--quiet"], more].concat());
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
 }
 
 #[test]

@@ -2,13 +2,11 @@
 //! whole.
 #![cfg(unix)]
 
-#[path = "../../../figures/tests/kills/mod.rs"]
-mod kills;
-
 use std::fs;
 use std::process::Command;
 
-use kills::{check_refusal, files, folder, kill_savers, long, names, succeed};
+use oracle::files::{files, folder, names};
+use oracle::kills::{check_refusal, kill_savers, long, succeed};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_report");
 

@@ -5,6 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use oracle::files::{files, folder};
+
 /// A quick run, stored.
 const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/report/quick.json");
 
@@ -21,16 +23,6 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("a plain path")
 }
 
-/// The files of a folder and their bytes.
-fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let entries = fs::read_dir(folder).expect("the folder is there").map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<(String, Vec<u8>)> = entries
-        .map(|path| (text(&path).rsplit('/').next().unwrap_or_default().to_owned(), fs::read(&path).expect("a file")))
-        .collect();
-    files.sort();
-    files
-}
-
 /// The stored run, cut down to what is measured in a second, with its errors changed by that.
 fn smaller(folder: &Path) -> String {
     let stored = fs::read_to_string(STORED).expect("a quick run is stored");
@@ -43,22 +35,22 @@ fn smaller(folder: &Path) -> String {
 
 #[test]
 fn a_report_written_again_from_its_json_has_the_same_bytes() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
+    let folder = folder();
     let (first, second) = (folder.path().join("first"), folder.path().join("second"));
     assert!(run(&["--from", STORED, "--out", text(&first)]).status.success());
     let json = first.join("report.json");
     assert!(run(&["--from", text(&json), "--out", text(&second)]).status.success());
-    let (first, second) = (contents(&first), contents(&second));
-    let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
+    let (first, second) = (files(&first), files(&second));
+    let names: Vec<&String> = first.keys().collect();
     for name in ["report.html", "report.md", "pictures.svg", "trees.svg", "quadratic.svg", "far-sphere-ours.png"] {
-        assert!(names.contains(&name), "{name} is missing from {names:?}");
+        assert!(first.contains_key(name), "{name} is missing from {names:?}");
     }
     assert!(first == second, "the bytes of {names:?} differ");
 }
 
 #[test]
 fn a_check_against_other_errors_fails_and_names_them() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
+    let folder = folder();
     let output = run(&["--check", &smaller(folder.path())]);
     assert_eq!(output.status.code(), Some(1));
     let complaint = complaint(&output);
@@ -68,7 +60,7 @@ fn a_check_against_other_errors_fails_and_names_them() {
 
 #[test]
 fn a_quick_check_wants_a_quick_run() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
+    let folder = folder();
     let output = run(&["--quick", "--check", &smaller(folder.path())]);
     assert_eq!(output.status.code(), Some(1));
     assert!(complaint(&output).ends_with("smaller.json: was not measured with --quick\n"));
@@ -86,7 +78,7 @@ fn a_missing_report_is_named() {
 
 #[test]
 fn a_file_that_is_no_report_is_named_with_the_place() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
+    let folder = folder();
     let path = folder.path().join("report.json");
     fs::write(&path, "{\n  \"machine\": 7\n}\n").expect("the file can be written");
     let output = run(&["--from", text(&path), "--out", text(folder.path())]);
@@ -100,7 +92,7 @@ type Hole = fn(&mut serde_json::Value);
 
 #[test]
 fn a_report_with_a_hole_is_refused() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
+    let folder = folder();
     let stored = fs::read_to_string(STORED).expect("a quick run is stored");
     let holes: [(&str, Hole); 4] = [
         ("expected every method of \"quadratic\" with the same classes", |report| {
@@ -130,7 +122,7 @@ fn a_report_with_a_hole_is_refused() {
 
 #[test]
 fn a_folder_that_cannot_be_made_is_named() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
+    let folder = folder();
     let file = folder.path().join("file");
     fs::write(&file, "").expect("the file can be written");
     let below = file.join("report");

@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn other_formats_are_refused_by_their_own_names() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = oracle::files::folder();
         let path = |name: &str| folder.path().join(name);
         let refusal = |name: &str, content: &[u8]| {
             std::fs::write(path(name), content).unwrap();
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn what_a_mesh_leaves_out_is_told_once_each() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = oracle::files::folder();
         let path = folder.path().join("bell\u{7}.obj");
         let text = "v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 1 0\nvn 0 0 1\nusemtl red\nf 1 2 3 4\nf 1 1 2\nf 1 2 3\n";
         std::fs::write(&path, text).unwrap();

@@ -458,46 +458,21 @@ fn exact_orientation(p: PlanePoint, q: PlanePoint, r: PlanePoint) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dashu::rational::RBig;
+    use oracle::{Big, Random, exact};
     use std::collections::HashMap;
 
-    /// Numbers in 0..1 from a fixed seed (splitmix64).
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in 0..end")]
-        fn below(&mut self, end: usize) -> usize {
-            (self.next() * end as f64) as usize
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            2.0 * DVec3::new(self.next(), self.next(), self.next()) - 1.0
-        }
-    }
-
-    fn exact(x: f64) -> RBig {
-        RBig::try_from(x).unwrap()
-    }
-
     /// Twice the signed area of a triangle, seen along an axis, exactly.
-    fn area(corners: [DVec3; 3], axis: usize) -> RBig {
+    fn area(corners: [DVec3; 3], axis: usize) -> Big {
         let [p, q, r] = corners.map(|corner| [1, 2].map(|k| exact(corner[(axis + k) % 3])));
         (&q[0] - &p[0]) * (&r[1] - &p[1]) - (&q[1] - &p[1]) * (&r[0] - &p[0])
     }
 
-    fn total(areas: impl Iterator<Item = RBig>) -> RBig {
-        areas.fold(RBig::ZERO, |sum, area| sum + area)
+    fn total(areas: impl Iterator<Item = Big>) -> Big {
+        areas.fold(Big::ZERO, |sum, area| sum + area)
     }
 
     /// Twice the signed area of a polygon.
-    fn whole_area(corners: &[DVec3], axis: usize) -> RBig {
+    fn whole_area(corners: &[DVec3], axis: usize) -> Big {
         total(corners[1..].windows(2).map(|pair| area([corners[0], pair[0], pair[1]], axis)))
     }
 
@@ -511,7 +486,7 @@ mod tests {
         assert_eq!(triangles.len(), n - 2, "{what}: {corners:?}");
         // Some axis along which the polygon has an area; all triangles have one of its sign there.
         let axes = [0, 1, 2].map(|axis| whole_area(corners, axis));
-        let zero = RBig::ZERO;
+        let zero = Big::ZERO;
         let turned = |axis: usize| {
             axes[axis] != zero
                 && triangles.iter().all(|cut| {
@@ -576,7 +551,7 @@ mod tests {
             [DVec3::ZERO, 1e-200 * DVec3::X, 1e-200 * DVec3::Z],
             [DVec3::ZERO, 1e200 * DVec3::Z, 1e200 * DVec3::Y],
         ];
-        planes.extend((0..3).map(|_| [random.vector(), random.vector(), random.vector()]));
+        planes.extend((0..3).map(|_| [random.point(), random.point(), random.point()]));
         planes
     }
 
@@ -597,7 +572,7 @@ mod tests {
         let mut outline = vec![[0.0, 0.0], [f64::from(4 * teeth), 0.0]];
         for tooth in (0..teeth).rev() {
             let x = f64::from(4 * tooth);
-            let tip = 2.0 + (100.0 * random.next()).round();
+            let tip = 2.0 + (100.0 * random.share()).round();
             outline.extend([[x + 3.0, 1.0], [x + 3.0, tip], [x + 1.0, tip], [x + 1.0, 1.0]]);
         }
         outline
@@ -609,7 +584,7 @@ mod tests {
         (0..corners)
             .map(|k| {
                 let (sine, cosine) = (step * f64::from(k)).sin_cos();
-                let far = 1e4 * (0.05 + random.next());
+                let far = 1e4 * (0.05 + random.share());
                 [(far * cosine).round(), (far * sine).round()]
             })
             .collect()
@@ -632,7 +607,7 @@ mod tests {
 
     #[test]
     fn simple_polygons_are_covered_exactly_once_whichever_corner_comes_first() {
-        let random = &mut Random(1);
+        let random = &mut Random::new(1);
         let planes = planes(random);
         let notched = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 1.0], [0.0, 4.0]];
         check_all_ways(&notched, &planes, "notch");
@@ -649,7 +624,7 @@ mod tests {
 
     #[test]
     fn corners_on_sides_belong_to_a_triangle() {
-        let random = &mut Random(2);
+        let random = &mut Random::new(2);
         // Planes that keep the corners exactly on their sides.
         let planes = &planes(random)[..4];
         for _ in 0..4 {
@@ -666,7 +641,7 @@ mod tests {
     fn many_small_polygons_on_a_grid_are_cut_exactly() {
         // Whole coordinates from 0 to 6 make every degenerate case; those that cross themselves are sorted out by an
         // oracle that compares all pairs of sides.
-        let random = &mut Random(3);
+        let random = &mut Random::new(3);
         let (mut simple, mut crossed) = (0, 0);
         while simple < 4000 {
             let n = 4 + random.below(6);
@@ -722,9 +697,9 @@ mod tests {
                 (0..10).map(|at| outline[(start + at) % 10]).map(|[x, y]| DVec3::new(x, y, 0.25 * x)).collect();
             let mut triangles = Vec::new();
             assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact, "from {start}");
-            let areas: Vec<RBig> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 2)).collect();
-            assert!(areas.iter().all(|area| *area > RBig::ZERO), "from {start}: {triangles:?}");
-            assert_eq!(total(areas.into_iter()), RBig::from(2 * (81 - 9)), "from {start}");
+            let areas: Vec<Big> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 2)).collect();
+            assert!(areas.iter().all(|area| *area > Big::ZERO), "from {start}: {triangles:?}");
+            assert_eq!(total(areas.into_iter()), Big::from(2 * (81 - 9)), "from {start}");
         }
     }
 
@@ -735,9 +710,9 @@ mod tests {
         let corners = corners.map(|(x, y)| corner(x, y));
         let mut triangles = Vec::new();
         assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact);
-        let areas: Vec<RBig> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 1)).collect();
+        let areas: Vec<Big> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 1)).collect();
         assert_eq!(areas.len(), 2);
-        assert_eq!(total(areas.into_iter()), RBig::from(-50));
+        assert_eq!(total(areas.into_iter()), Big::from(-50));
     }
 
     #[test]
@@ -755,7 +730,7 @@ mod tests {
 
     #[test]
     fn large_polygons_are_cut() {
-        let random = &mut Random(4);
+        let random = &mut Random::new(4);
         let plane = |outline: Vec<[f64; 2]>| -> Vec<DVec3> {
             outline.into_iter().map(|[x, y]| DVec3::new(x, y, 0.5 * x)).collect()
         };

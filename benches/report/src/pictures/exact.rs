@@ -2,13 +2,13 @@
 //! a texture, between exact coordinates, is in doubles.
 
 use glam::DVec3;
+use oracle::{
+    Big, Crossing, Lamp, coordinates, cross, exact, long, nearest_root, point_at, rounded, shade, sub, vector,
+};
 use rayon::prelude::*;
 use rt_geom::{Ray, Sphere};
 
 use super::pixels::samples;
-use crate::reference::{
-    Big, Lamp, coordinates, cross, crossing, exact, long, nearest_root, point_at, rounded, shade, sub, weights,
-};
 use figures::camera::{Size, View};
 use figures::scene::{Filter, Paint, Scene};
 
@@ -16,37 +16,33 @@ use figures::scene::{Filter, Paint, Scene};
 pub(super) fn picture(scene: &Scene, view: &View) -> Vec<u8> {
     let Size { width, height, .. } = view.size();
     let lamps: Vec<Lamp> =
-        scene.lights.iter().map(|light| Lamp { position: wide(light.position), color: wide(light.color) }).collect();
+        scene.lights.iter().map(|light| Lamp { position: vector(light.position), color: vector(light.color) }).collect();
     let pixel = |i: u32| samples(color(scene, &lamps, &view.ray(i % width, i / width)));
     (0..width * height).into_par_iter().flat_map_iter(pixel).collect()
 }
 
-fn wide(v: DVec3) -> [Big; 3] {
-    v.to_array().map(exact)
-}
-
 /// The colour that a ray brings back.
 fn color(scene: &Scene, lamps: &[Lamp], ray: &Ray) -> DVec3 {
-    let (origin, direction) = (wide(ray.origin()), wide(ray.direction()));
+    let (origin, direction) = (vector(ray.origin()), vector(ray.direction()));
     let Some((t, index)) = closest(scene, ray, &origin, &direction) else { return scene.background };
     let point = point_at(&origin, &direction, &t);
     let (look, normal, surface) = match scene.spheres.get(index) {
         Some(sphere) => {
             let look = scene.look(scene.sphere_looks[index]).expect("a sphere of these scenes has a look");
-            let normal = sub(&point, &wide(sphere.center()));
+            let normal = sub(&point, &vector(sphere.center()));
             let surface = paint_at(&look.paint, &normal);
             (look, normal, surface)
         }
         None => {
             let index = index - scene.spheres.len();
             let look = scene.look(scene.triangle_looks[index]).expect("a triangle has a look");
-            let [a, b, c] = scene.triangles[index].vertices().map(wide);
+            let [a, b, c] = scene.triangles[index].vertices().map(vector);
             let normal = cross(&sub(&b, &a), &sub(&c, &a));
             let surface = match scene.vertex_colors.get(index) {
                 Some(Some(colors)) => {
                     let vertices = [a, b, c].map(|vertex| sub(&vertex, &origin));
-                    let weights = weights(&direction, &vertices).expect("the triangle is hit");
-                    let colors = colors.map(wide);
+                    let weights = Crossing::new(&direction, vertices).weights().expect("the triangle is hit");
+                    let colors = colors.map(vector);
                     [0, 1, 2].map(|i| {
                         let parts = weights.iter().zip(&colors).map(|(weight, color)| weight * &color[i]);
                         parts.fold(Big::ZERO, |sum, part| sum + part)
@@ -75,13 +71,13 @@ fn closest(scene: &Scene, ray: &Ray, origin: &[Big; 3], direction: &[Big; 3]) ->
     };
     for (index, sphere) in scene.spheres.iter().enumerate() {
         if !surely_beside(ray, sphere) {
-            let offset = sub(origin, &wide(sphere.center()));
+            let offset = sub(origin, &vector(sphere.center()));
             offer(nearest_root(direction, &offset, &exact(sphere.radius())), index);
         }
     }
     for (index, triangle) in scene.triangles.iter().enumerate() {
-        let vertices = triangle.vertices().map(|vertex| sub(&wide(vertex), origin));
-        offer(crossing(direction, &vertices), scene.spheres.len() + index);
+        let vertices = triangle.vertices().map(|vertex| sub(&vector(vertex), origin));
+        offer(Crossing::new(direction, vertices).t(), scene.spheres.len() + index);
     }
     best
 }
@@ -89,12 +85,12 @@ fn closest(scene: &Scene, ray: &Ray, origin: &[Big; 3], direction: &[Big; 3]) ->
 /// The colour of a surface; of an image, where its outward normal is `normal`.
 fn paint_at(paint: &Paint, normal: &[Big; 3]) -> [Big; 3] {
     match paint {
-        Paint::Color(color) => wide(*color),
+        Paint::Color(color) => vector(*color),
         Paint::Image { texture, mirrored, filter } => {
             let [x, y, z] = normal.clone();
             let place = [x, y, if *mirrored { z } else { -z }].map(|c| long(&c));
             let [u, v] = coordinates(&place, [0, 1, 2].map(|i| place[i] < Big::ZERO));
-            wide(match filter {
+            vector(match filter {
                 Filter::Nearest => texture.nearest(rounded(&u), rounded(&v)),
                 Filter::Bilinear => texture.bilinear(rounded(&u), rounded(&v)),
             })
