@@ -6,27 +6,15 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
+use oracle::Random;
 use rt_geom::{Sphere, enclosing_sphere};
-
-/// Even numbers in 0..1: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 * (-53.0_f64).exp2()
-    }
-}
 
 fn spheres(count: usize, random: &mut Random) -> Vec<Sphere> {
     let largest = 0.5 / (count as f64).cbrt();
     (0..count)
         .map(|_| {
-            let center = DVec3::new(random.unit(), random.unit(), random.unit());
-            Sphere::new(center, largest * random.unit()).expect("finite")
+            let center = 0.5 * random.point();
+            Sphere::new(center, largest * random.share()).expect("finite")
         })
         .collect()
 }
@@ -74,7 +62,7 @@ fn each<T>(sets: &[Vec<Sphere>], method: impl Fn(&[Sphere]) -> T) {
 fn enclosing(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("enclosing_sphere");
     for count in [2, 8, 64, 1000, 100_000, 1_000_000] {
-        let mut random = Random(count as u64);
+        let mut random = Random::new(count as u64);
         let sets: Vec<Vec<Sphere>> =
             (0..(100_000 / count).clamp(1, 1000)).map(|_| spheres(count, &mut random)).collect();
         group.throughput(Throughput::Elements((sets.len() * count) as u64));

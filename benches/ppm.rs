@@ -17,12 +17,9 @@ const HEIGHT: usize = 1500;
 
 /// Values of all lengths without any order, so that no branch can be foreseen.
 fn picture(maxval: u16) -> Pixmap {
-    let mut state = 1_u64;
-    let samples = (0..3 * WIDTH * HEIGHT).map(|_| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let value = (state >> 33) % (u64::from(maxval) + 1);
-        u16::try_from(value).expect("at most maxval")
-    });
+    let mut random = oracle::Random::new(1);
+    let samples =
+        (0..3 * WIDTH * HEIGHT).map(|_| u16::try_from(random.below(usize::from(maxval) + 1)).expect("at most maxval"));
     Pixmap::new(WIDTH, HEIGHT, maxval, samples.collect()).expect("as many samples as the size says")
 }
 

@@ -11,19 +11,9 @@ use rt_math::{Roots, solve_quadratic};
 
 type Equation = [f64; 3];
 
-/// Returns pseudo-random numbers in `-1..1` from a fixed seed (xorshift64).
-fn random() -> impl FnMut() -> f64 {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 fn cases() -> [(&'static str, Vec<Equation>); 4] {
-    let mut random = random();
+    let mut random = oracle::Random::new(1);
+    let mut random = || random.uniform();
     let from_roots = |a: f64, x: f64, y: f64| [a, -a * (x + y), a * x * y];
     let predictable = (0..4096).map(|_| from_roots(1.5 + random(), 10.0 * random(), 10.0 * random())).collect();
     let any = (0..1 << 17).map(|_| [random(), random(), random()]).collect();

@@ -5,27 +5,11 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use glam::DVec3;
+use oracle::Random;
 use rt_geom::{Ray, Sphere};
 
 /// Inputs of each bench: enough that branches are not learnt by heart.
 const COUNT: usize = 4096;
-
-/// Pseudo-random numbers in `-1..1` from a fixed seed (xorshift64).
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.uniform(), self.uniform(), self.uniform())
-    }
-}
 
 /// `c`, `b² - a c` and the smaller of the roots that are not negative, as every textbook has it.
 fn textbook(ray: &Ray, sphere: &Sphere) -> Option<f64> {
@@ -70,20 +54,17 @@ fn gems(ray: &Ray, sphere: &Sphere) -> Option<f64> {
 }
 
 fn cases(hits: bool, misses: bool) -> Vec<(Ray, Sphere)> {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    let make = || {
-        let (origin, center, radius) = (10.0 * random.vector(), 10.0 * random.vector(), 3.0 * random.uniform().abs());
-        let ray = Ray::new(origin, center + 1.4 * radius * random.vector() - origin)?;
+    let mut random = Random::new(1);
+    let make = move || {
+        let (origin, center, radius) = (10.0 * random.point(), 10.0 * random.point(), 3.0 * random.uniform().abs());
+        let ray = Ray::new(origin, center + 1.4 * radius * random.point() - origin)?;
         Some((ray, Sphere::new(center, radius)?))
     };
-    std::iter::repeat_with({
-        let mut make = make;
-        move || make()
-    })
-    .flatten()
-    .filter(|(ray, sphere)| if sphere.any(ray, 0.0..f64::INFINITY) { hits } else { misses })
-    .take(COUNT)
-    .collect()
+    std::iter::repeat_with(make)
+        .flatten()
+        .filter(|(ray, sphere)| if sphere.any(ray, 0.0..f64::INFINITY) { hits } else { misses })
+        .take(COUNT)
+        .collect()
 }
 
 fn ray_sphere(criterion: &mut Criterion) {

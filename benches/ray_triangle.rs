@@ -6,26 +6,11 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
+use oracle::Random;
 use rt_geom::{Inside, Ray, Triangle, inside_triangle};
 
 /// Inputs of each bench: enough that branches are not learnt by heart.
 const COUNT: usize = 4096;
-
-/// Pseudo-random numbers in `-1..1` from a fixed seed (xorshift64).
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.uniform(), self.uniform(), self.uniform())
-    }
-}
 
 /// T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, without culling or epsilon.
 fn moller_trumbore(ray: &Ray, triangle: &Triangle) -> Option<(f64, f64, f64)> {
@@ -96,11 +81,11 @@ fn woop(ray: &Sheared, triangle: &Triangle) -> Option<(f64, f64, f64)> {
 }
 
 fn cases(hits: bool, misses: bool) -> Vec<(Ray, Triangle)> {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random::new(1);
     let make = move || {
-        let place = 5.0 * random.vector();
-        let [a, b, c] = [random.vector(), random.vector(), random.vector()].map(|v| place + v);
-        let origin = 10.0 * random.vector();
+        let place = 5.0 * random.point();
+        let [a, b, c] = [random.point(), random.point(), random.point()].map(|v| place + v);
+        let origin = 10.0 * random.point();
         let target = a + (0.7 * random.uniform() + 0.4) * (b - a) + (0.7 * random.uniform() + 0.4) * (c - a);
         let ray = Ray::new(origin, (target - origin) * (1.5 + random.uniform()))?;
         Some((ray, Triangle::new(a, b, c)?))

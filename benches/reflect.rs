@@ -14,26 +14,14 @@ const COUNT: usize = 4096;
 /// A vector and a normal.
 type Pair = (DVec3, DVec3);
 
-/// Returns pseudo-random vectors in the cube `-1..1` from a fixed seed (xorshift64).
-fn random() -> impl FnMut() -> DVec3 {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut number = move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
-    move || DVec3::new(number(), number(), number())
-}
-
 fn plain(v: DVec3, n: DVec3) -> DVec3 {
     v - 2.0 * v.dot(n) / n.dot(n) * n
 }
 
 fn reflections(criterion: &mut Criterion) {
-    let mut random = random();
-    let benign: Vec<Pair> = (0..COUNT).map(|_| (random(), random().normalize())).collect();
-    let diagonal: Vec<Pair> = (0..COUNT).map(|_| (random() * DVec3::X, DVec3::new(0.6, 0.6, 0.0))).collect();
+    let mut random = oracle::Random::new(1);
+    let benign: Vec<Pair> = (0..COUNT).map(|_| (random.point(), random.direction())).collect();
+    let diagonal: Vec<Pair> = (0..COUNT).map(|_| (random.point() * DVec3::X, DVec3::new(0.6, 0.6, 0.0))).collect();
     for (case, pairs) in [("benign", benign), ("diagonal", diagonal)] {
         measure(criterion, "plain", case, &pairs, plain);
         measure(criterion, "glam", case, &pairs, DVec3::reflect);

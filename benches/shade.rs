@@ -5,30 +5,16 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
+use oracle::Random;
 use rt_shade::{Material, PointLight, SurfacePoint, Texture, phong, phong_batch, sphere_uv};
 
 /// Inputs of each bench: enough that branches are not learnt by heart.
 const COUNT: usize = 4096;
 
-/// Returns pseudo-random numbers in `0..1` from a fixed seed (xorshift64).
-fn random() -> impl FnMut() -> f64 {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// Returns unit vectors, uniform over the sphere.
 fn unit_vectors() -> Vec<DVec3> {
-    let mut random = random();
-    std::iter::from_fn(|| Some(DVec3::new(random(), random(), random()) * 2.0 - 1.0))
-        .filter(|v| (0.01..1.0).contains(&v.length_squared()))
-        .map(DVec3::normalize)
-        .take(COUNT)
-        .collect()
+    let mut random = Random::new(1);
+    (0..COUNT).map(|_| random.direction()).collect()
 }
 
 /// The textbook's formula: wrong for other lengths than 1, NaN for a length a rounding error above it.
@@ -134,8 +120,8 @@ fn lookup(criterion: &mut Criterion) {
     let (width, height) = (720, 360);
     let samples = (0..3 * width * height).map(|i| u16::try_from(i % 251).expect("below 251")).collect();
     let texture = Texture::new(width, height, samples, 255).expect("the samples fit");
-    let mut random = random();
-    let uv: Vec<(f64, f64)> = (0..COUNT).map(|_| (random(), random())).collect();
+    let mut random = Random::new(2);
+    let uv: Vec<(f64, f64)> = (0..COUNT).map(|_| (random.share(), random.share())).collect();
     let mut group = criterion.benchmark_group("texture");
     group.throughput(Throughput::Elements(COUNT as u64));
     for (name, read) in
