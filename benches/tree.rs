@@ -3,34 +3,18 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use glam::DVec3;
+use oracle::Random;
 use rt_geom::{Bvh, Ray, Sphere, SphereTree};
 
 const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 const RAYS: usize = 1024;
 
-/// Pseudo-random numbers in `-1..1` from a fixed seed (xorshift64).
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.uniform(), self.uniform(), self.uniform())
-    }
-}
-
 /// Spheres that fill a tenth of a cube of side 2, and rays from within it.
 fn scene(n: usize) -> (Vec<Sphere>, Vec<Ray>) {
-    let random = &mut Random(0x5EED);
+    let random = &mut Random::new(0x5EED);
     let radius = (0.8 / (n as f64 * 4.188_790_204_786_391)).cbrt();
-    let spheres = (0..n).map(|_| Sphere::new(random.vector(), radius).unwrap()).collect();
-    let rays = (0..RAYS).map(|_| Ray::new(random.vector(), random.vector()).unwrap()).collect();
+    let spheres = (0..n).map(|_| Sphere::new(random.point(), radius).unwrap()).collect();
+    let rays = (0..RAYS).map(|_| Ray::new(random.point(), random.point()).unwrap()).collect();
     (spheres, rays)
 }
 

@@ -415,6 +415,7 @@ fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use oracle::Random;
 
     use super::*;
 
@@ -513,14 +514,10 @@ mod tests {
     /// such a ray misses.
     #[test]
     fn the_test_of_a_node_drops_no_hit() {
-        let mut state = 7_u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
+        let random = &mut Random::new(7);
         let mut met = 0;
         for round in 0..20_000 {
-            let mut vector = || DVec3::new(random(), random(), random());
+            let mut vector = || random.point();
             let (center, direction) = (vector() * 2f64.powi(-(round % 40)), vector());
             let (aside, away) = (direction.cross(vector()).normalize(), vector().x);
             let radius = 0.5 * vector().x.abs();

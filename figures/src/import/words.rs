@@ -74,11 +74,8 @@ mod tests {
 
     #[test]
     fn a_short_decimal_is_the_nearest_double() {
-        let mut bits = 7_u64;
-        let mut next = |below: u32| {
-            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            usize::try_from((bits >> 33) % u64::from(below)).unwrap()
-        };
+        let mut random = oracle::Random::new(7);
+        let mut next = |below: usize| random.below(below);
         let mut short = 0;
         for _ in 0..100_000 {
             let mut word = ["", "-", "+"][next(3)].to_owned();

@@ -15,8 +15,11 @@ use figures::scene::{Filter, Paint, Scene};
 /// Returns the samples of a picture.
 pub(super) fn picture(scene: &Scene, view: &View) -> Vec<u8> {
     let Size { width, height, .. } = view.size();
-    let lamps: Vec<Lamp> =
-        scene.lights.iter().map(|light| Lamp { position: vector(light.position), color: vector(light.color) }).collect();
+    let lamps: Vec<Lamp> = scene
+        .lights
+        .iter()
+        .map(|light| Lamp { position: vector(light.position), color: vector(light.color) })
+        .collect();
     let pixel = |i: u32| samples(color(scene, &lamps, &view.ray(i % width, i / width)));
     (0..width * height).into_par_iter().flat_map_iter(pixel).collect()
 }

@@ -59,20 +59,18 @@ fn count_less<S: Simd, const VECTORS: usize>(simd: S, keys: &[u32]) -> [u32; MOS
 #[cfg(test)]
 mod tests {
     use fearless_simd::Fallback;
+    use oracle::Random;
 
     use super::*;
 
     #[test]
     fn the_order_is_that_of_sorting() {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 32) as u32
-        };
+        let random = &mut Random::new(1);
         for n in 0..=MOST {
             for spread in [7, 20, 32] {
                 // All different, as the place is in the low bits, and up to the largest number.
-                let keys: Vec<u32> = (0..).take(n).map(|i| next() >> (32 - spread) << 7 | i).collect();
+                let keys: Vec<u32> =
+                    (0..).take(n).map(|i| (random.bits() >> 32) as u32 >> (32 - spread) << 7 | i).collect();
                 let mut expected: Vec<u8> = (0..).take(n).collect();
                 expected.sort_by_key(|&place| keys[usize::from(place)]);
                 let best = Level::new();

@@ -438,7 +438,7 @@ fn shifted_right(x: u64, by: i32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oracle::{Big, Random, cases, exact, is_rounded_quotient, is_rounding_of, power_of_two, rounded, sign};
+    use oracle::{Big, Random, cases, exact, is_rounded_quotient, is_rounding_of, power_of_two, sign};
 
     fn whole(digit: u64) -> Big {
         Big::from(digit).with_precision(0).value()
