@@ -235,9 +235,10 @@ pub fn count_tests(scene: &Path, size: PictureSize) -> Result<(), Failure> {
             .map(|(column, row)| objects.closest_counted(&view.ray(column, row)).1)
             .map(|visits| (visits.nodes as u64, visits.tests as u64))
             .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-        let name = method.to_possible_value().expect("every method has a name");
+        let value = method.to_possible_value();
+        let name = value.as_ref().map_or("", |value| value.get_name());
         let [nodes, tests] = [nodes, tests].map(|count| count as f64 / rays as f64);
-        text += &format!("{:<10} {nodes:>10.1} {tests:>12.1}\n", name.get_name());
+        text += &format!("{name:<10} {nodes:>10.1} {tests:>12.1}\n");
     }
     to_stdout(text.as_bytes())
 }

@@ -28,7 +28,7 @@ fn sort_cell(indices: &mut [u32], point: &(dyn Fn(u32) -> DVec3 + Sync), levels:
         return;
     }
     let steps = f64::from((1 << BITS) - 1);
-    // (A cast rounds towards zero.)
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 2^21, rounded towards zero")]
     let cell = |p: DVec3| ((p - low) / size * steps).to_array().map(|x| x as u32);
     let mut keys: Vec<(u64, u32)> = indices.par_iter().map(|&i| (place_on_curve(cell(half(i))), i)).collect();
     keys.par_sort_unstable();

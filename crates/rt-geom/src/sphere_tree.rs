@@ -17,7 +17,7 @@ use std::ops::Range;
 use rt_math::exact::{U, power_of_two, power_of_two_near_inverse};
 use rt_math::fma_dispatch;
 
-use crate::enclosing::nodes::{Node as Part, enclosing_nodes};
+use crate::enclosing::nodes::{Subtree, enclosing_nodes};
 use crate::hilbert;
 use crate::leaf::{Any, Closest, Leaves, Query};
 use crate::ray::{PreparedRay, is_open, larger, max_abs};
@@ -132,7 +132,7 @@ impl SphereTree {
     }
 
     /// For each part how many of its primitives are tested one after the other; 0 if its halves are visited in its place.
-    fn runs(&self, parts: &[Part], spheres: &[Option<Sphere>]) -> Vec<u32> {
+    fn runs(&self, parts: &[Subtree], spheres: &[Option<Sphere>]) -> Vec<u32> {
         let radius = |at: usize| spheres[at].map_or(f64::INFINITY, |sphere| sphere.radius());
         let equal = |a: usize, b: usize| self.leaves.placed(a) == self.leaves.placed(b);
         let mut costs = vec![0.0; parts.len()];
@@ -164,7 +164,7 @@ impl SphereTree {
     }
 
     /// Appends the nodes of a part; the recursion is no deeper than the tree, [`DEPTH`].
-    fn plant(&mut self, at: usize, parts: &[Part], spheres: &[Option<Sphere>], runs: &[u32]) -> Child {
+    fn plant(&mut self, at: usize, parts: &[Subtree], spheres: &[Option<Sphere>], runs: &[u32]) -> Child {
         let part = &parts[at];
         if runs[at] > 0 {
             return Child { first: short(part.leaves.start), count: runs[at] };
@@ -224,8 +224,8 @@ impl SphereTree {
 }
 
 /// Lists the parts below a range of places, the halves of a part next to each other, and the range itself last.
-fn halve(range: Range<usize>, parts: &mut Vec<Part>) {
-    fn below(range: Range<usize>, parts: &mut Vec<Part>) -> Range<usize> {
+fn halve(range: Range<usize>, parts: &mut Vec<Subtree>) {
+    fn below(range: Range<usize>, parts: &mut Vec<Subtree>) -> Range<usize> {
         if range.len() <= PAIR_COST {
             return 0..0;
         }
@@ -233,12 +233,12 @@ fn halve(range: Range<usize>, parts: &mut Vec<Part>) {
         let halves = [range.start..middle, middle..range.end];
         let listed = halves.clone().map(|half| below(half, parts));
         let start = parts.len();
-        parts.extend(halves.into_iter().zip(listed).map(|(leaves, children)| Part { leaves, children }));
+        parts.extend(halves.into_iter().zip(listed).map(|(leaves, children)| Subtree { leaves, children }));
         start..parts.len()
     }
     if !range.is_empty() {
         let children = below(range.clone(), parts);
-        parts.push(Part { leaves: range, children });
+        parts.push(Subtree { leaves: range, children });
     }
 }
 
@@ -252,7 +252,7 @@ fn bounds_of(spheres: &[Sphere], triangles: &[Triangle]) -> Vec<Option<Sphere>> 
 }
 
 /// The minimal sphere of each part; `None` where no finite sphere encloses.
-fn spheres_of_parts(parts: &[Part], bounds: &[Option<Sphere>]) -> Vec<Option<Sphere>> {
+fn spheres_of_parts(parts: &[Subtree], bounds: &[Option<Sphere>]) -> Vec<Option<Sphere>> {
     let point = Sphere::new(glam::DVec3::ZERO, 0.0).expect("a valid sphere");
     let leaves: Vec<Sphere> = bounds.iter().map(|bound| bound.unwrap_or(point)).collect();
     let mut spheres = enclosing_nodes(&leaves, parts);
@@ -276,7 +276,7 @@ struct Segment {
     direction: [f64; 3],
     start: f64,
     last: f64,
-    /// The length of a unit of `t`; NaN, and with it `start` and `last`, where that is not a normal number by far.
+    /// The length of a unit of `t`; infinite where that is far from ordinary, and then every `t` counts.
     unit: f64,
 }
 
@@ -286,13 +286,24 @@ impl Segment {
         let direction = ray.ray.direction() * power;
         let length = direction.length();
         let unit = length * (scale / power);
-        let unit = if (LONGEST.recip()..LONGEST).contains(&unit) { unit } else { f64::NAN };
-        Self {
+        let ordinary = (LONGEST.recip()..LONGEST).contains(&unit);
+        let mut segment = Self {
             origin: (ray.ray.origin() * scale).to_array(),
             direction: (direction * length.recip()).to_array(),
-            start: ray.start * unit,
-            last: ray.end * unit,
-            unit,
+            start: if ordinary { ray.start * unit } else { f64::NEG_INFINITY },
+            last: f64::INFINITY,
+            unit: if ordinary { unit } else { f64::INFINITY },
+        };
+        segment.shorten(ray.end);
+        segment
+    }
+
+    /// No hit with a larger `t` counts. Hits at minus infinity tie, wherever they are.
+    #[inline(always)]
+    fn shorten(&mut self, t: f64) {
+        let last = t.max(f64::MIN) * self.unit;
+        if last < self.last && self.unit < f64::INFINITY {
+            self.last = last;
         }
     }
 
@@ -391,19 +402,16 @@ fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f
             if query.is_settled() {
                 break;
             }
-            if query.limit() < ray.end {
-                // Hits at minus infinity tie, wherever they are.
-                segment.last = query.limit().max(f64::MIN) * segment.unit;
-            }
+            segment.shorten(query.limit());
         }
-        // Back to the nearest part that is still of interest; NaN is.
+        // Back to the nearest part that is still of interest.
         loop {
             if height == 0 {
                 return (query.answer(leaves, ray), visits);
             }
             height -= 1;
             let (enter, child) = stack[height];
-            if !(enter > segment.last) {
+            if enter <= segment.last {
                 at = child;
                 break;
             }
@@ -538,7 +546,7 @@ mod tests {
                 let prepared = PreparedRay::new(&ray, start..last);
                 let segment = Segment::new(&prepared, 1.0);
                 for enter in [segment.enter::<false>(&node, 0), segment.enter::<true>(&node, 1)] {
-                    assert!(enter < f64::INFINITY && !(enter > segment.last), "{sphere:?} {ray:?} {t} {enter}");
+                    assert!(enter < f64::INFINITY && enter <= segment.last, "{sphere:?} {ray:?} {t} {enter}");
                 }
             }
         }

@@ -11,7 +11,7 @@ use std::ops::Range;
 use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::Bvh;
-use super::cull::{Line, box_keys};
+use super::cull::{CullRay, box_keys};
 use super::node::{Block, Blocked, Child, Kind, WIDTH};
 use super::walk::{Areas, meet};
 use crate::leaf::Query;
@@ -27,7 +27,7 @@ const LANE: u32 = 15;
 const _: () = assert!(WIDTH == 16);
 
 struct Slot<'a, Q> {
-    line: Line,
+    line: CullRay,
     ray: PreparedRay<'a>,
     query: Q,
     at: Child,
@@ -47,7 +47,7 @@ struct Stacks {
 impl<'a, Q: Query> Slot<'a, Q> {
     fn new(ray: &'a Ray, within: &Range<f64>, base: usize) -> Self {
         Self {
-            line: Line::EVERYTHING,
+            line: CullRay::EVERYTHING,
             ray: PreparedRay::new(ray, within.clone()),
             query: Q::default(),
             at: Child::from_bits(0),
@@ -313,4 +313,34 @@ fn byte(x: usize) -> u8 {
 #[expect(clippy::cast_possible_truncation, reason = "a place or a node, of which there are fewer than 2^32")]
 fn word(x: usize) -> u32 {
     x as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::Level;
+    use oracle::Random;
+
+    use super::*;
+    use crate::simd::dispatch;
+
+    #[inline(always)]
+    fn sorted<S: Simd>(simd: S, numbers: [u32; 8]) -> [u32; 8] {
+        descending(simd, u32x8::simd_from(simd, numbers)).into()
+    }
+
+    /// A network that sorts all numbers of zeros and ones sorts everything (D. Knuth, TAOCP 3, 5.3.4, theorem Z).
+    #[test]
+    fn the_network_sorts_all_zeros_and_ones_and_random_numbers() {
+        let random = &mut Random::new(6);
+        let bits = (0..256u32).map(|bits| std::array::from_fn(|i| bits >> i & 1));
+        let any = (0..1000).map(|_| std::array::from_fn(|_| (random.bits() >> 32) as u32 >> (random.bits() % 32)));
+        let numbers: Vec<[u32; 8]> = bits.chain(any).collect();
+        for numbers in numbers {
+            let mut expected = numbers;
+            expected.sort_unstable_by(|a, b| b.cmp(a));
+            for level in [Level::new(), Level::baseline()] {
+                assert_eq!(dispatch!(level, simd => sorted(simd, numbers)), expected, "{level:?} {numbers:?}");
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! The cull: which of sixteen bounds can a ray still meet within its range? It may keep too much and never drops a hit.
 //!
-//! A ray enters as a [`Line`]: in cull coordinates, measured from the point of its line that is nearest to the scene's
+//! A ray enters as a [`CullRay`]: in cull coordinates, measured from the point of its line that is nearest to the scene's
 //! center. So every number here is of the order of 1, however far the ray's origin is, and each rounding error is a
 //! small multiple of 2^-24. The slack that makes up for them is derived in `docs/numerics.md`, section 9.
 //!
@@ -36,7 +36,7 @@ const KEY_SHIFT: f32 = 4.0;
 
 /// A ray made ready for culling in one frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct CullRay {
     /// Rows of [`Boxes`] that hold the near planes, `axis` or `axis + 3`, and the far ones, the others.
     near: [usize; 3],
     far: [usize; 3],
@@ -55,7 +55,7 @@ pub(super) struct Line {
     last_offset: f64,
 }
 
-impl Line {
+impl CullRay {
     /// Prepares the ray for parameters `t` from `start` to `end`; `false` if all of it passes by the unit ball.
     ///
     /// In place, because a copy of what has just been written piece by piece waits for the writes.
@@ -197,7 +197,7 @@ fn across(w: Vec3) -> [Vec3; 3] {
 
 /// The boxes met, as bits; and a key for each: in the order of entry, meaningless where not met.
 #[inline(always)]
-pub(super) fn meet_boxes<S: Simd>(simd: S, line: &Line, boxes: &Boxes, keys: &mut [u32; WIDTH]) -> u32 {
+pub(super) fn meet_boxes<S: Simd>(simd: S, line: &CullRay, boxes: &Boxes, keys: &mut [u32; WIDTH]) -> u32 {
     let (key, mask) = box_keys(simd, line, boxes);
     key.store_slice(keys);
     bits(mask.to_bitmask())
@@ -205,7 +205,7 @@ pub(super) fn meet_boxes<S: Simd>(simd: S, line: &Line, boxes: &Boxes, keys: &mu
 
 /// The same in registers.
 #[inline(always)]
-pub(super) fn box_keys<S: Simd>(simd: S, line: &Line, boxes: &Boxes) -> (u32x16<S>, mask32x16<S>) {
+pub(super) fn box_keys<S: Simd>(simd: S, line: &CullRay, boxes: &Boxes) -> (u32x16<S>, mask32x16<S>) {
     let near = |axis: usize| (line.near[axis], line.inverse[axis], line.near_offset[axis]);
     let far = |axis: usize| (line.far[axis], line.inverse[axis], line.far_offset[axis]);
     let (x, y, z) = (near(0), near(1), near(2));
@@ -225,7 +225,7 @@ fn planes<S: Simd>(simd: S, boxes: &Boxes, (row, inverse, offset): (usize, f32, 
 
 /// The balls met, as bits.
 #[inline(always)]
-pub(super) fn meet_balls<S: Simd>(simd: S, line: &Line, balls: &Balls) -> u32 {
+pub(super) fn meet_balls<S: Simd>(simd: S, line: &CullRay, balls: &Balls) -> u32 {
     let center = (load(simd, &balls.center[0]), load(simd, &balls.center[1]), load(simd, &balls.center[2]));
     let x = along(simd, center, line.axes[0], line.offset[0]);
     let y = along(simd, center, line.axes[1], line.offset[1]);
@@ -253,4 +253,79 @@ fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
 #[expect(clippy::cast_possible_truncation, reason = "sixteen bits are set at most")]
 fn bits(mask: u64) -> u32 {
     mask as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::Level;
+    use oracle::Random;
+
+    use super::super::node::Block;
+    use super::*;
+    use crate::simd::dispatch;
+    use crate::{Ray, Sphere, Triangle};
+
+    #[inline(always)]
+    fn met<S: Simd, B: Block>(simd: S, frame: &Frame, ray: &PreparedRay, block: &B) -> u32 {
+        let mut line = CullRay::EVERYTHING;
+        if line.set(simd, frame, ray) { block.meet(simd, &line) } else { 0 }
+    }
+
+    fn check<B: Block>(
+        leaves: &[B::Leaf],
+        hits: impl Fn(&B::Leaf, &Ray) -> Option<f64>,
+        random: &mut Random,
+    ) -> (u32, u32) {
+        let frame = Frame::around(Sphere::new(DVec3::ZERO, 1.75).as_ref());
+        let (mut kept, mut hit) = (0, 0);
+        let mut block = B::EMPTY;
+        for (lane, leaf) in leaves.iter().enumerate() {
+            block.bound(lane, leaf, &frame);
+        }
+        for round in 0..400 {
+            let origin = random.point() * 2f64.powi(round % 36);
+            let direction = (random.point() - origin) * 2f64.powi(round % 21 - 10);
+            let Some(ray) = Ray::new(origin, direction) else { continue };
+            let ts: Vec<Option<f64>> = leaves.iter().map(|leaf| hits(leaf, &ray)).collect();
+            let first = ts.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+            for (start, end) in [(0.0, f64::INFINITY), (first, first.next_up())] {
+                let prepared = PreparedRay::new(&ray, start..end);
+                for level in [Level::new(), Level::baseline()] {
+                    let mask = dispatch!(level, simd => met(simd, &frame, &prepared, &block));
+                    for (lane, t) in ts.iter().enumerate() {
+                        let counts = t.is_some_and(|t| start <= t && t < end);
+                        assert!(!counts || mask >> lane & 1 == 1, "{level:?} {ray:?} lane {lane} {t:?} {start} {end}");
+                        hit += u32::from(counts);
+                    }
+                    kept += mask.count_ones();
+                }
+            }
+        }
+        (kept, hit)
+    }
+
+    /// From near and from 2^36 radii away, with directions of any length, and ranges that end just behind the first hit.
+    #[test]
+    fn the_cull_drops_no_hit_and_most_of_the_rest() {
+        let random = &mut Random::new(9);
+        let (mut kept, mut hit) = ([0; 2], [0; 2]);
+        for _ in 0..20 {
+            let spheres: Vec<Sphere> =
+                (0..16).map(|_| Sphere::new(random.point(), 2f64.powi(-random.integer(1..20))).unwrap()).collect();
+            let small = |random: &mut Random| 0.2 * random.point();
+            let triangles: Vec<Triangle> = (0..16)
+                .map(|_| {
+                    let at = random.point() * 0.8;
+                    Triangle::new(at + small(random), at + small(random), at + small(random)).unwrap()
+                })
+                .collect();
+            let ahead = 0.0..f64::INFINITY;
+            let (a, b) = check::<Balls>(&spheres, |sphere, ray| sphere.closest(ray, ahead.clone()), random);
+            let (c, d) = check::<Boxes>(&triangles, |triangle, ray| triangle.closest(ray, ahead.clone()), random);
+            kept = [kept[0] + a, kept[1] + c];
+            hit = [hit[0] + b, hit[1] + d];
+        }
+        assert!(hit[0] > 1_000 && hit[1] > 1_000, "{hit:?}");
+        assert!(kept[0] < 4 * hit[0] && kept[1] < 8 * hit[1], "{kept:?} for {hit:?}");
+    }
 }

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
 
-use super::cull::{Line, four, meet_balls, meet_boxes};
+use super::cull::{CullRay, four, meet_balls, meet_boxes};
 use crate::leaf::{Leaf, Leaves};
 use crate::{Sphere, Triangle};
 
@@ -76,7 +76,7 @@ pub(super) trait Block: Copy + Send {
     fn bound(&mut self, lane: usize, leaf: &Self::Leaf, frame: &Frame);
 
     /// Which primitives a ray may meet, as bits.
-    fn meet<S: Simd>(&self, simd: S, line: &Line) -> u32;
+    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32;
 }
 
 impl Block for Balls {
@@ -88,7 +88,7 @@ impl Block for Balls {
     }
 
     #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, line: &Line) -> u32 {
+    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32 {
         meet_balls(simd, line, self)
     }
 }
@@ -103,7 +103,7 @@ impl Block for Boxes {
     }
 
     #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, line: &Line) -> u32 {
+    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32 {
         meet_boxes(simd, line, self, &mut [0; WIDTH])
     }
 }

@@ -10,7 +10,7 @@ use std::ops::Range;
 use fearless_simd::Simd;
 
 use super::Bvh;
-use super::cull::{Line, meet_boxes};
+use super::cull::{CullRay, meet_boxes};
 use super::node::{Block, Blocked, Child, Kind, WIDTH};
 use crate::leaf::{Leaves, Query};
 use crate::ray::PreparedRay;
@@ -61,7 +61,7 @@ pub(super) fn cast<S: Simd, Q: Query>(
     visits: &mut Visits,
 ) -> Q::Answer {
     let prepared = PreparedRay::new(ray, within);
-    let mut line = Line::EVERYTHING;
+    let mut line = CullRay::EVERYTHING;
     if !line.set(simd, &tree.frame, &prepared) {
         return Q::Answer::default();
     }
@@ -87,7 +87,7 @@ fn walk<S: Simd, Q: Query>(
     tree: &Bvh,
     ray: &PreparedRay,
     query: &mut Q,
-    line: &mut Line,
+    line: &mut CullRay,
     stack: &mut [Pending],
     visits: &mut Visits,
 ) {
@@ -200,7 +200,7 @@ fn block<S: Simd, Q: Query, B: Block>(
     index: usize,
     query: &mut Q,
     tree: &Bvh,
-    line: &Line,
+    line: &CullRay,
     ray: &PreparedRay,
     visits: &mut Visits,
 ) {

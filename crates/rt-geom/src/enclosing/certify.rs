@@ -452,3 +452,51 @@ const PAIR_ERROR: f64 = power_of_two(-64);
 /// With the center closer than this to that of a sphere, as a share of the radius, the bend of the distance is not
 /// small beside a unit in the last place.
 const NEARLY_INSIDE: f64 = power_of_two(-20);
+
+#[cfg(test)]
+mod tests {
+    use oracle::{Big, Random, exact, root, sub, vector};
+
+    use super::*;
+
+    /// How far a sphere reaches from a point: a square root of 400 bits.
+    fn reach_of(center: DVec3, sphere: &Sphere) -> Big {
+        let [x, y, z] = sub(&vector(sphere.center()), &vector(center));
+        root(&(&x * &x + &y * &y + &z * &z)) + exact(sphere.radius())
+    }
+
+    #[test]
+    fn the_bracket_of_a_pair_holds_the_reach_and_the_bound_is_below_the_minimum() {
+        let random = &mut Random::new(3);
+        let mut sharp = 0;
+        for round in 0..4_000 {
+            let offset = random.point() * 2f64.powi(round % 40);
+            let [a, b] = [(); 2].map(|()| Sphere::new(offset + random.point(), 0.5 * random.share()).unwrap());
+            let Some((bracket, bound)) = pair(crate::simd::baseline(), &a, &b) else { continue };
+            let [from_a, from_b] = [&a, &b].map(|sphere| reach_of(bracket.center, sphere));
+            let reach = if from_a > from_b { from_a } else { from_b };
+            assert!(exact(bracket.high) >= reach && exact(bracket.low.next_down()) < reach, "{a:?} {b:?} {bracket:?}");
+            let minimum = (reach_of(a.center(), &b) + exact(a.radius())) / Big::from(2);
+            assert!(exact(bound) <= minimum, "{a:?} {b:?}: {bound} is no lower bound");
+            sharp += usize::from(exact(bound.next_up().next_up()) > minimum);
+        }
+        assert!(sharp > 3_000, "{sharp}");
+    }
+
+    #[test]
+    fn the_bracket_holds_the_reach_of_everything_and_settles_on_the_smallest_double() {
+        let random = &mut Random::new(4);
+        for _ in 0..500 {
+            let spheres: Vec<Sphere> =
+                (0..7).map(|_| Sphere::new(random.point(), 0.1 * random.share()).unwrap()).collect();
+            let mut bracket = Bracket { center: 0.1 * random.point(), low: 0.0, high: 0.0 };
+            bracket.enclose(crate::simd::baseline(), [0, 1, 2, 3].map(|i| &spheres[i]));
+            bracket.enclose_all(&spheres[4..]);
+            let reaches = spheres.iter().map(|sphere| reach_of(bracket.center, sphere));
+            let most = reaches.reduce(|a, b| if a > b { a } else { b }).unwrap();
+            let radius = bracket.settle(&spheres);
+            assert!(bracket.low <= radius && radius <= bracket.high, "{bracket:?} {radius}");
+            assert!(exact(radius) >= most && exact(radius.next_down()) < most, "{spheres:?} {radius}");
+        }
+    }
+}

@@ -20,7 +20,7 @@ use crate::simd::dispatch;
 
 /// A node of a tree over spheres in leaf order.
 #[derive(Clone, Debug)]
-pub(crate) struct Node {
+pub(crate) struct Subtree {
     /// The leaves below the node: a range that is not empty.
     pub(crate) leaves: Range<usize>,
     /// The children: nodes listed before this one, whose leaves together are those of this one; or none.
@@ -36,7 +36,7 @@ pub(crate) struct Node {
 ///
 /// # Panics
 /// With 2^32 leaves or more.
-pub(crate) fn enclosing_nodes(leaves: &[Sphere], nodes: &[Node]) -> Vec<Option<Sphere>> {
+pub(crate) fn enclosing_nodes(leaves: &[Sphere], nodes: &[Subtree]) -> Vec<Option<Sphere>> {
     // Where what is below a node begins; the node itself if nothing is.
     let mut start: Vec<usize> = Vec::with_capacity(nodes.len());
     let mut roots = vec![true; nodes.len()];
@@ -108,7 +108,7 @@ impl NodeSphere {
 /// Nodes that lie together and what is known of them.
 struct Subtrees<'a> {
     leaves: &'a [Sphere],
-    nodes: &'a [Node],
+    nodes: &'a [Subtree],
     /// The first node of this part.
     first: usize,
     found: &'a mut [NodeSphere],
@@ -138,7 +138,7 @@ impl Subtrees<'_> {
         }
     }
 
-    fn node<S: Simd>(&self, simd: S, node: &Node, stack: &mut Vec<usize>) -> NodeSphere {
+    fn node<S: Simd>(&self, simd: S, node: &Subtree, stack: &mut Vec<usize>) -> NodeSphere {
         let range = node.leaves.clone();
         match &self.leaves[range.clone()] {
             [one] => return NodeSphere::new(Some(*one), &[range.start]),
@@ -179,7 +179,7 @@ impl Subtrees<'_> {
 
     /// The places of the children in this part.
     #[inline(always)]
-    fn places(&self, node: &Node) -> Range<usize> {
+    fn places(&self, node: &Subtree) -> Range<usize> {
         node.children.start - self.first..node.children.end - self.first
     }
 
@@ -188,7 +188,7 @@ impl Subtrees<'_> {
     fn climb<S: Simd, const VECTORS: usize>(
         &self,
         simd: S,
-        node: &Node,
+        node: &Subtree,
         these: &[usize],
         stack: &mut Vec<usize>,
     ) -> Option<NodeSphere> {
@@ -255,7 +255,7 @@ impl Subtrees<'_> {
     fn farthest<S: Simd>(
         &self,
         simd: S,
-        node: &Node,
+        node: &Subtree,
         center: DVec3,
         radius: f64,
         visits: &mut usize,
@@ -362,7 +362,7 @@ mod tests {
 
     /// Lists what is below the node with this range in the tree that cuts ranges into `ways` parts, down to those of at
     /// most `smallest` leaves; returns its children's places.
-    fn cut(range: Range<usize>, ways: usize, smallest: usize, nodes: &mut Vec<Node>) -> Range<usize> {
+    fn cut(range: Range<usize>, ways: usize, smallest: usize, nodes: &mut Vec<Subtree>) -> Range<usize> {
         if range.len() <= smallest {
             return 0..0;
         }
@@ -371,7 +371,7 @@ mod tests {
         let parts: Vec<Range<usize>> = (0..parts).map(|part| at(part)..at(part + 1)).collect();
         let below: Vec<Range<usize>> = parts.iter().map(|part| cut(part.clone(), ways, smallest, nodes)).collect();
         let start = nodes.len();
-        nodes.extend(parts.into_iter().zip(below).map(|(leaves, children)| Node { leaves, children }));
+        nodes.extend(parts.into_iter().zip(below).map(|(leaves, children)| Subtree { leaves, children }));
         start..nodes.len()
     }
 
@@ -400,7 +400,7 @@ mod tests {
                 let leaves = leaves(1000, kind);
                 let mut nodes = Vec::new();
                 let children = cut(0..leaves.len(), ways, smallest, &mut nodes);
-                nodes.push(Node { leaves: 0..leaves.len(), children });
+                nodes.push(Subtree { leaves: 0..leaves.len(), children });
                 let spheres = enclosing_nodes(&leaves, &nodes);
                 assert_eq!(spheres.len(), nodes.len());
                 for (node, sphere) in nodes.iter().zip(spheres) {
