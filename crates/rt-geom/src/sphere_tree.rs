@@ -64,7 +64,7 @@ struct Child {
 }
 
 /// What testing both spheres of a node costs, in tests of primitives. So many primitives and fewer are never worth a node.
-const PAIR_COST: usize = 5;
+const PAIR_COST: usize = 8;
 
 /// The rounding errors of a sphere's test, relative to its radius and its distance from the ray's origin:
 /// `docs/numerics.md`, lemma 9.8.
@@ -307,12 +307,12 @@ impl Segment {
         }
     }
 
-    /// Where the segment may enter a sphere of a node; infinite if it surely misses it.
+    /// How the line passes a sphere of a node.
     ///
     /// With `v` from the center to the origin, the line is nearest to the center at `s = -v.u`, and passes it there at the
-    /// distance `|v + s u|`. Written so that NaN, from numbers out of range, counts as met.
+    /// distance `|v + s u|`. NaN, from numbers out of range, counts as met.
     #[inline(always)]
-    fn enter<const FMA: bool>(&self, node: &Node, side: usize) -> f64 {
+    fn pass<const FMA: bool>(&self, node: &Node, side: usize) -> Passage {
         let [cx, cy, cz] = node.center;
         let (x, y, z) = (self.origin[0] - cx[side], self.origin[1] - cy[side], self.origin[2] - cz[side]);
         let ([u, v, w], radius) = (self.direction, node.radius[side]);
@@ -321,12 +321,30 @@ impl Segment {
         let reach = radius + fused::<FMA>(MARGIN, far, UNDERFLOW);
         let (x, y, z) = (fused::<FMA>(s, u, x), fused::<FMA>(s, v, y), fused::<FMA>(s, w, z));
         let aside = fused::<FMA>(x, x, fused::<FMA>(y, y, z * z));
-        // Half the chord, squared; negative for a line that misses.
-        let chord = fused::<FMA>(reach, reach, -aside);
-        let half = chord.sqrt();
-        let misses = (chord < 0.0) | (s - half > self.last) | (self.start - s > half);
-        if misses { f64::INFINITY } else { larger(s - half, f64::MIN) }
+        Passage { nearest: s, chord: fused::<FMA>(reach, reach, -aside) }
     }
+
+    /// Where the segment may enter the sphere; `None` if it surely misses it.
+    ///
+    /// Branches in this order, which are predicted: the usual miss need not wait for the root.
+    #[inline(always)]
+    fn enter(&self, passage: &Passage) -> Option<f64> {
+        if passage.chord < 0.0 {
+            return None;
+        }
+        let half = passage.chord.sqrt();
+        let misses = (passage.nearest - half > self.last) | (self.start - passage.nearest > half);
+        if misses { None } else { Some(larger(passage.nearest - half, f64::MIN)) }
+    }
+}
+
+/// How a line passes a sphere.
+#[derive(Clone, Copy)]
+struct Passage {
+    /// Where it is nearest to the center.
+    nearest: f64,
+    /// Half the chord, squared; negative for a line that misses.
+    chord: f64,
 }
 
 #[inline(always)]
@@ -369,25 +387,24 @@ fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f
         if at.count == 0 {
             let node = &tree.nodes[at.first as usize];
             visits.nodes += 2;
-            let (a, b) = (segment.enter::<FMA>(node, 0), segment.enter::<FMA>(node, 1));
-            // (Branches, which are predicted: the next node need not wait for the roots.)
-            match (a < f64::INFINITY, b < f64::INFINITY) {
-                (true, true) => {
-                    let (near, far, enter) = if b < a { (1, 0, a) } else { (0, 1, b) };
+            let (a, b) = (segment.pass::<FMA>(node, 0), segment.pass::<FMA>(node, 1));
+            match (segment.enter(&a), segment.enter(&b)) {
+                (Some(enter_a), Some(enter_b)) => {
+                    let (near, far, enter) = if b.nearest < a.nearest { (1, 0, enter_a) } else { (0, 1, enter_b) };
                     stack[height] = (enter, node.halves[far]);
                     height += 1;
                     at = node.halves[near];
                     continue;
                 }
-                (true, false) => {
+                (Some(_), None) => {
                     at = node.halves[0];
                     continue;
                 }
-                (false, true) => {
+                (None, Some(_)) => {
                     at = node.halves[1];
                     continue;
                 }
-                (false, false) => {}
+                (None, None) => {}
             }
         } else {
             let places = at.first as usize..(at.first + at.count) as usize;
@@ -441,9 +458,9 @@ mod tests {
     #[test]
     fn the_second_half_is_the_larger() {
         let mut parts = Vec::new();
-        halve(0..13, &mut parts);
+        halve(0..26, &mut parts);
         let ranges: Vec<Range<usize>> = parts.iter().map(|part| part.leaves.clone()).collect();
-        assert_eq!(ranges, [0..3, 3..6, 6..9, 9..13, 0..6, 6..13, 0..13]);
+        assert_eq!(ranges, [0..6, 6..13, 13..19, 19..26, 0..13, 13..26, 0..26]);
         for part in parts.iter().filter(|part| !part.children.is_empty()) {
             let [first, second] = [part.children.start, part.children.start + 1].map(|at| &parts[at].leaves);
             assert_eq!((first.start, first.end, second.end), (part.leaves.start, second.start, part.leaves.end));
@@ -483,7 +500,7 @@ mod tests {
             let ray = Ray::new(DVec3::new(1.0, -1e4 * direction, 0.0), DVec3::Y * direction).unwrap();
             let (hit, visits) = tree.closest_counted(&ray, AHEAD);
             assert_eq!(hit.map(|hit| hit.index), Some(if direction > 0.0 { 1 } else { 21 }));
-            assert!(visits.tests <= 12, "{visits:?}");
+            assert!(visits.tests <= 16, "{visits:?}");
         }
     }
 
@@ -545,8 +562,9 @@ mod tests {
             for (start, last) in [(f64::NEG_INFINITY, t), (t, f64::INFINITY), (t, t.next_up())] {
                 let prepared = PreparedRay::new(&ray, start..last);
                 let segment = Segment::new(&prepared, 1.0);
-                for enter in [segment.enter::<false>(&node, 0), segment.enter::<true>(&node, 1)] {
-                    assert!(enter < f64::INFINITY && enter <= segment.last, "{sphere:?} {ray:?} {t} {enter}");
+                for passage in [segment.pass::<false>(&node, 0), segment.pass::<true>(&node, 1)] {
+                    let enter = segment.enter(&passage);
+                    assert!(enter.is_some_and(|enter| enter <= segment.last), "{sphere:?} {ray:?} {t} {enter:?}");
                 }
             }
         }
