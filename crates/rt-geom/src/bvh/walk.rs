@@ -101,55 +101,20 @@ fn walk<S: Simd, Q: Query>(
             visits.nodes += 1;
             let mut met = meet_boxes(simd, opaque(line), &node.boxes, &mut keys);
             if met != 0 {
-                let next = |met: &mut u32| {
-                    let lane = met.trailing_zeros() as usize;
-                    *met &= *met - 1;
-                    if fetch {
-                        areas.prefetch(node.children[lane]);
-                    }
-                    pending(&keys, &node.children, lane)
-                };
-                let a = next(&mut met);
-                if met == 0 {
-                    at = child(a);
-                    continue;
-                }
-                let b = next(&mut met);
-                let (a, b) = (a.min(b), a.max(b));
-                if met == 0 {
-                    stack[height] = b;
-                    height += 1;
-                    at = child(a);
-                    continue;
-                }
-                let c = next(&mut met);
-                let (a, c) = (a.min(c), a.max(c));
-                let (b, c) = (b.min(c), b.max(c));
-                if met == 0 {
-                    stack[height] = c;
-                    stack[height + 1] = b;
-                    height += 2;
-                    at = child(a);
-                    continue;
-                }
-                // Four or more: sorted into place.
-                let base = height;
-                stack[base] = c;
-                stack[base + 1] = b;
-                stack[base + 2] = a;
-                height += 3;
-                while met != 0 {
-                    let new = next(&mut met);
-                    let mut hole = height;
-                    while hole > base && stack[hole - 1] < new {
-                        stack[hole] = stack[hole - 1];
-                        hole -= 1;
-                    }
-                    stack[hole] = new;
-                    height += 1;
-                }
-                height -= 1;
-                at = child(stack[height]);
+                let nearest = nearest(
+                    #[inline(always)]
+                    || {
+                        let lane = met.trailing_zeros() as usize;
+                        met &= met - 1;
+                        if fetch {
+                            areas.prefetch(node.children[lane]);
+                        }
+                        (pending(&keys, &node.children, lane), met == 0)
+                    },
+                    stack,
+                    &mut height,
+                );
+                at = child(nearest);
                 continue;
             }
         } else {
@@ -190,8 +155,51 @@ fn walk<S: Simd, Q: Query>(
     }
 }
 
+/// The nearest of the children that `next` gives, each with whether it is the last; the others go on the stack, farthest
+/// first.
+#[inline(always)]
+fn nearest(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], height: &mut usize) -> Pending {
+    let (a, last) = next();
+    if last {
+        return a;
+    }
+    let (b, last) = next();
+    let (a, b) = (a.min(b), a.max(b));
+    if last {
+        stack[*height] = b;
+        *height += 1;
+        return a;
+    }
+    let (c, mut last) = next();
+    let (a, c) = (a.min(c), a.max(c));
+    let (b, c) = (b.min(c), b.max(c));
+    if last {
+        stack[*height] = c;
+        stack[*height + 1] = b;
+        *height += 2;
+        return a;
+    }
+    // Four or more: sorted into place.
+    let base = *height;
+    stack[base..base + 3].copy_from_slice(&[c, b, a]);
+    let mut top = base + 3;
+    while !last {
+        let new;
+        (new, last) = next();
+        let mut hole = top;
+        while hole > base && stack[hole - 1] < new {
+            stack[hole] = stack[hole - 1];
+            hole -= 1;
+        }
+        stack[hole] = new;
+        top += 1;
+    }
+    *height = top - 1;
+    stack[*height]
+}
+
 /// Hides from the compiler that the ray is the same in every step. It would else spread the ray's thirty numbers over
-/// vectors before the loop, and spill them: 11 % slower for single rays (`closest`, uniform, packed and nested spheres, 64
+/// vectors before the loop, and spill them: 3 to 11 % slower for single rays (`closest`, uniform, packed and nested spheres, 64
 /// to 1e5, AVX2 on a Zen 3).
 #[inline(always)]
 fn opaque(ray: &CullRay) -> &CullRay {
