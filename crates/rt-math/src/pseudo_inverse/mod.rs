@@ -1,10 +1,12 @@
 //! The Moore-Penrose pseudo-inverse of a 3 x 3 matrix.
 //!
-//! Three stages, each one decides what it can and leaves the rest to the next; all give the same bits.
+//! Five stages, each one decides what it can and leaves the rest to the next; all give the same bits.
 //!
 //! 1. [`regular`]: the inverse in double-double. Nearly every matrix is well scaled and regular, and ends here.
-//! 2. [`fixed`]: entries of like magnitude as exact fixed-point numbers. Here most singular matrices end.
-//! 3. [`integers`]: exact for every finite matrix.
+//! 2. [`whole`]: small whole numbers times a power of two, all exact in doubles. Here most singular matrices end.
+//! 3. [`regular`] again, with the determinant in triple precision: nearly singular matrices.
+//! 4. [`fixed`]: entries of like magnitude as exact fixed-point numbers.
+//! 5. [`integers`]: exact for every finite matrix.
 //!
 //! [`truncated`] is for the other function, which takes small singular values as zero.
 
@@ -12,10 +14,13 @@ mod fixed;
 mod integers;
 mod regular;
 mod truncated;
+mod whole;
 
 use glam::{DMat3, DVec3};
 
-use crate::exact::power_of_two;
+use truncated::Estimate;
+
+use crate::exact::{mantissa_and_exponent, power_of_two, scale};
 use crate::fma_dispatch;
 
 /// A pseudo-inverse and the rank it was made for.
@@ -75,19 +80,52 @@ fn staged_kernel<const FMA: bool>(
     i: f64,
 ) -> PseudoInverse {
     let m = [a, b, c, d, e, f, g, h, i];
-    match regular::inverse::<FMA>(&m) {
+    match regular::inverse::<FMA, false>(&m) {
         Some(matrix) => PseudoInverse { matrix, rank: 3 },
-        None => undecided(&DMat3::from_cols_array(&m)),
+        None => undecided(a, b, c, d, e, f, g, h, i),
     }
 }
 
+/// All that double-double does not decide.
 #[cold]
 #[inline(never)]
-fn undecided(m: &DMat3) -> PseudoInverse {
+#[expect(clippy::too_many_arguments, reason = "as above")]
+fn undecided(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> PseudoInverse {
+    let entries = [a, b, c, d, e, f, g, h, i];
+    let m = &DMat3::from_cols_array(&entries);
+    let decided = if whole::is_likely(&entries) {
+        whole::pseudo_inverse(m)
+    } else {
+        cancelling(a, b, c, d, e, f, g, h, i).map(|matrix| PseudoInverse { matrix, rank: 3 })
+    };
+    if let Some(answer) = decided {
+        return answer;
+    }
     if !m.is_finite() {
         return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
     }
-    fixed::pseudo_inverse(m).unwrap_or_else(|| integers::pseudo_inverse(m))
+    rescaled(m, pseudo_inverse).or_else(|| fixed::pseudo_inverse(m)).unwrap_or_else(|| integers::pseudo_inverse(m))
+}
+
+fma_dispatch! {
+    #[expect(clippy::too_many_arguments, reason = "as above")]
+    fn cancelling(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> Option<DMat3> = cancelling_kernel;
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn cancelling_kernel<const FMA: bool>(
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    h: f64,
+    i: f64,
+) -> Option<DMat3> {
+    regular::inverse::<FMA, true>(&[a, b, c, d, e, f, g, h, i])
 }
 
 /// Returns the row sums of the pseudo-inverse of `m`: the least-squares solution of smallest length of `m x = (1, 1, 1)`.
@@ -118,16 +156,49 @@ fma_dispatch! {
 #[inline(always)]
 fn sums_kernel<const FMA: bool>(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 {
     let m = [a, b, c, d, e, f, g, h, i];
-    regular::row_sums::<FMA>(&m).unwrap_or_else(|| undecided_sums(&DMat3::from_cols_array(&m)))
+    match regular::row_sums::<FMA, false>(&m) {
+        Some(sums) => sums,
+        None => undecided_sums(a, b, c, d, e, f, g, h, i),
+    }
 }
 
+/// The same for the row sums.
 #[cold]
 #[inline(never)]
-fn undecided_sums(m: &DMat3) -> DVec3 {
+#[expect(clippy::too_many_arguments, reason = "as above")]
+fn undecided_sums(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 {
+    let entries = [a, b, c, d, e, f, g, h, i];
+    let m = &DMat3::from_cols_array(&entries);
+    let decided =
+        if whole::is_likely(&entries) { whole::row_sums(m) } else { cancelling_sums(a, b, c, d, e, f, g, h, i) };
+    if let Some(sums) = decided {
+        return sums;
+    }
     if !m.is_finite() {
         return DVec3::NAN;
     }
     fixed::row_sums(m).unwrap_or_else(|| integers::row_sums(m))
+}
+
+fma_dispatch! {
+    #[expect(clippy::too_many_arguments, reason = "as above")]
+    fn cancelling_sums(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> Option<DVec3> = cancelling_sums_kernel;
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn cancelling_sums_kernel<const FMA: bool>(
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    h: f64,
+    i: f64,
+) -> Option<DVec3> {
+    regular::row_sums::<FMA, true>(&[a, b, c, d, e, f, g, h, i])
 }
 
 /// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.
@@ -159,8 +230,96 @@ pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
     if rtol >= 1.0 {
         return PseudoInverse { matrix: DMat3::ZERO, rank: 0 };
     }
-    let exact = pseudo_inverse(m);
-    if rtol < SMALLEST { exact } else { truncated::truncated(&m, rtol, exact, pseudo_inverse) }
+    if rtol < SMALLEST {
+        return pseudo_inverse(m);
+    }
+    rescaled(&m, |m| with_tolerance(m, rtol)).unwrap_or_else(|| with_tolerance(m, rtol))
+}
+
+/// The same, for a tolerance between those limits.
+#[inline(always)]
+fn with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
+    let entries = m.to_cols_array();
+    let [a, b, c, d, e, f, g, h, i] = entries;
+    let exact = regular_inverse(a, b, c, d, e, f, g, h, i);
+    if let Some(matrix) = exact {
+        let exact = PseudoInverse { matrix, rank: 3 };
+        if truncated::keeps_all(&m, rtol, &exact) {
+            return exact;
+        }
+    }
+    nearly_singular(&m, rtol, exact)
+}
+
+/// What has singular values to drop, or may have; `regular` is the inverse, if double-double gives it.
+#[cold]
+#[inline(never)]
+fn nearly_singular(m: &DMat3, rtol: f64, regular: Option<DMat3>) -> PseudoInverse {
+    let entries = m.to_cols_array();
+    let estimate = if whole::is_likely(&entries) { Estimate::Unknown } else { truncated::estimate(m, rtol) };
+    if let Estimate::Dropped(answer) = estimate {
+        return answer;
+    }
+    let [a, b, c, d, e, f, g, h, i] = entries;
+    let exact = match regular {
+        Some(matrix) => PseudoInverse { matrix, rank: 3 },
+        None => undecided(a, b, c, d, e, f, g, h, i),
+    };
+    if matches!(estimate, Estimate::Kept) || truncated::keeps_all(m, rtol, &exact) {
+        return exact;
+    }
+    truncated::truncated(m, rtol, exact, pseudo_inverse)
+}
+
+fma_dispatch! {
+    #[expect(clippy::too_many_arguments, reason = "as above")]
+    fn regular_inverse(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> Option<DMat3>
+        = regular_inverse_kernel;
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn regular_inverse_kernel<const FMA: bool>(
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    h: f64,
+    i: f64,
+) -> Option<DMat3> {
+    regular::inverse::<FMA, false>(&[a, b, c, d, e, f, g, h, i])
+}
+
+/// What `invert` makes of a finite matrix with entries far from 1, by one that is a power of two times it and about 1. `None` for
+/// others, and where the scaling loses a bit of the matrix or might of the answer.
+#[inline(always)]
+fn rescaled(m: &DMat3, invert: impl FnOnce(DMat3) -> PseudoInverse) -> Option<PseudoInverse> {
+    const ORDINARY: core::ops::Range<f64> = power_of_two(-90)..power_of_two(90);
+    let largest =
+        m.to_cols_array().into_iter().fold(0.0, |largest: f64, x| if x.abs() > largest { x.abs() } else { largest });
+    if ORDINARY.contains(&largest) || largest == 0.0 {
+        return None;
+    }
+    rescaled_by(m, -mantissa_and_exponent(largest).1, invert)
+}
+
+#[cold]
+#[inline(never)]
+fn rescaled_by(m: &DMat3, shift: i32, invert: impl FnOnce(DMat3) -> PseudoInverse) -> Option<PseudoInverse> {
+    const SMALLEST: f64 = power_of_two(-100);
+    let near_one = scale(*m, shift);
+    let exact = |(x, y): (f64, f64)| x == 0.0 || y.abs() >= SMALLEST;
+    if !m.to_cols_array().into_iter().zip(near_one.to_cols_array()).all(exact) {
+        return None;
+    }
+    let PseudoInverse { matrix, rank } = invert(near_one);
+    let answer = scale(matrix, shift);
+    let certain = |(x, y): (f64, f64)| x == 0.0 || !y.is_subnormal() && y != 0.0;
+    let mut pairs = matrix.to_cols_array().into_iter().zip(answer.to_cols_array());
+    pairs.all(certain).then_some(PseudoInverse { matrix: answer, rank })
 }
 
 #[cfg(test)]
@@ -173,28 +332,44 @@ mod tests {
     /// Every stage decides, and what it decides is what the exact integers say, to the bit.
     #[test]
     fn stages_agree_and_each_one_decides() {
-        let mut decided = [0; 3];
+        let mut decided = [0; 5];
         for (name, class) in CLASSES {
             let mut random = Random::new(7);
-            let mut of_class = [0; 3];
+            let mut of_class = [0; 5];
             for _ in 0..cases(100_000) / 10 {
                 let m = class(&mut random);
                 let entries = m.to_cols_array();
                 let regular = |inverse: Option<DMat3>| inverse.map(|matrix| PseudoInverse { matrix, rank: 3 });
-                let fused = regular(regular::inverse::<true>(&entries));
+                let fused = [regular::inverse::<true, false>(&entries), regular::inverse::<true, true>(&entries)];
                 let stages = [
-                    regular(regular::inverse::<false>(&entries)),
+                    regular(regular::inverse::<false, false>(&entries)),
+                    whole::pseudo_inverse(&m),
+                    regular(regular::inverse::<false, true>(&entries)),
                     fixed::pseudo_inverse(&m),
                     Some(integers::pseudo_inverse(&m)),
                 ];
-                let expected = bits(&stages[2].expect("integers always decide"));
-                for answer in stages.iter().chain([&fused]).flatten() {
+                let expected = bits(&stages[4].expect("integers always decide"));
+                for answer in stages.iter().chain(&fused.map(regular)).flatten() {
                     assert_eq!(bits(answer), expected, "{name}: {entries:?}");
                 }
                 assert_eq!(bits(&pseudo_inverse(m)), expected, "{name}: {entries:?}");
                 of_class[stages.iter().position(Option::is_some).expect("the last")] += 1;
+
+                let sums = |sums: DVec3| sums.to_array().map(f64::to_bits);
+                let expected = sums(integers::row_sums(&m));
+                let stages = [
+                    regular::row_sums::<false, false>(&entries),
+                    regular::row_sums::<true, true>(&entries),
+                    regular::row_sums::<false, true>(&entries),
+                    whole::row_sums(&m),
+                    fixed::row_sums(&m),
+                    Some(pseudo_inverse_row_sums(m)),
+                ];
+                for answer in stages.into_iter().flatten() {
+                    assert_eq!(sums(answer), expected, "{name}, row sums: {entries:?}");
+                }
             }
-            println!("{name:24} double-double, fixed, integers: {of_class:?}");
+            println!("{name:24} double-double, whole, triple, fixed, integers: {of_class:?}");
             decided.iter_mut().zip(of_class).for_each(|(sum, count)| *sum += count);
         }
         assert!(decided.iter().all(|&count| count > 500), "{decided:?}");

@@ -8,23 +8,33 @@ use glam::{DMat3, DVec3};
 use crate::exact::{U, power_of_two, rounded_ends, two_diff, two_prod, two_sum};
 
 /// Where the series for the reciprocal is bounded, and the determinant is proved not to be zero.
-const TAU_LIMIT: f64 = 1.0 / 8192.0;
+const TAU_LIMIT: f64 = power_of_two(-19);
 const ETA_LIMIT: f64 = 1.0 / 8.0;
+
+/// Bound of what the determinant in triple precision leaves out: this part of the sum of the magnitudes of its terms.
+const CANCELLING_ERROR: f64 = 512.0 * U * U * U;
 
 /// Magnitudes of entries, besides zero, for which no product, error term or quotient can over- or underflow.
 const SMALLEST: f64 = 1.0 / LARGEST;
 const LARGEST: f64 = power_of_two(100);
 
 /// The adjugate of a matrix, column by column as in the inverse: each entry is `h + l` within `u b`, and `|l| <= b`.
-struct Adjugate {
+pub(super) struct Adjugate {
     h: [f64; 9],
     l: [f64; 9],
     b: [f64; 9],
 }
 
-/// The adjugate and the reciprocal of the determinant, unless an entry is out of range or the determinant may be zero.
+impl Adjugate {
+    /// The entries, each within a few units in the last place of itself or of `u` times its terms.
+    pub(super) fn high(&self) -> &[f64; 9] {
+        &self.h
+    }
+}
+
+/// The adjugate, unless an entry is out of range.
 #[inline(always)]
-fn parts<const FMA: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
+pub(super) fn adjugate<const FMA: bool>(m: &[f64; 9]) -> Option<Adjugate> {
     if !m.iter().fold(true, |all, &x| all & ((x == 0.0) | ((x.abs() >= SMALLEST) & (x.abs() <= LARGEST)))) {
         return None;
     }
@@ -45,7 +55,22 @@ fn parts<const FMA: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
         }
     }
 
-    // The determinant by the first row: s + low, within `bound`.
+    Some(Adjugate { h, l, b })
+}
+
+/// The adjugate and the reciprocal of the determinant, unless an entry is out of range or the determinant may be zero. If
+/// `CANCELS`, the determinant is computed in triple precision.
+#[inline(always)]
+fn parts<const FMA: bool, const CANCELS: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
+    let adjugate = adjugate::<FMA>(m)?;
+    let (s, low, bound) = if CANCELS { cancelling_determinant::<FMA>(m) } else { determinant::<FMA>(m, &adjugate) };
+    let reciprocal = Reciprocal::new(s, low, bound)?;
+    Some((adjugate, reciprocal))
+}
+
+/// The determinant by the first row: `s + low`, within `bound`.
+#[inline(always)]
+pub(super) fn determinant<const FMA: bool>(m: &[f64; 9], Adjugate { h, l, b }: &Adjugate) -> (f64, f64, f64) {
     let a = [m[0], m[3], m[6]];
     let [(p0, w0), (p1, w1), (p2, w2)] = [0, 1, 2].map(|k| two_prod::<FMA>(a[k], h[k]));
     let v = [a[0] * l[0], a[1] * l[1], a[2] * l[2]];
@@ -56,13 +81,46 @@ fn parts<const FMA: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
     let low = y[1] + y[2];
     let sum = |v: [f64; 3]| v[0].abs() + v[1].abs() + v[2].abs();
     let bound = 1.125 * U * (sum([a[0] * b[0], a[1] * b[1], a[2] * b[2]]) + sum(v) + sum(x) + sum(y) + low.abs());
-
-    Some((Adjugate { h, l, b }, Reciprocal::new(s, low, bound)?))
+    (s, low, bound)
 }
 
+/// The determinant by the first row, where it is far smaller than its terms: `s + low`, within `bound`.
 #[inline(always)]
-pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
-    let (Adjugate { h, l, b }, reciprocal) = parts::<FMA>(m)?;
+fn cancelling_determinant<const FMA: bool>(m: &[f64; 9]) -> (f64, f64, f64) {
+    // A cofactor is exactly h + e + t + f. Times the entry that gives terms of three orders, each about u of the one before.
+    let (mut first, mut second, mut third, mut size) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
+    for i in 0..3 {
+        let (j, k) = (3 * ((i + 1) % 3), 3 * ((i + 2) % 3));
+        let (p, p_error) = two_prod::<FMA>(m[j + 1], m[k + 2]);
+        let (q, q_error) = two_prod::<FMA>(m[k + 1], m[j + 2]);
+        let ((h, e), (t, f)) = (two_diff(p, q), two_diff(p_error, q_error));
+        let a = m[3 * i];
+        let (ah, ah_error) = two_prod::<FMA>(a, h);
+        let (ae, ae_error) = two_prod::<FMA>(a, e);
+        let (at, at_error) = two_prod::<FMA>(a, t);
+        let (sum, error_0) = two_sum(ah_error, ae);
+        let (sum, error_1) = two_sum(sum, at);
+        (first[i], second[i]) = (ah, sum);
+        third[i] = ((ae_error + at_error) + a * f) + (error_0 + error_1);
+        size[i] = a.abs() * (p.abs() + q.abs());
+    }
+    // The terms of the first two orders are summed without error.
+    let (s, error_0) = two_sum(first[0], first[1]);
+    let (s, error_1) = two_sum(s, first[2]);
+    let (errors, rest_0) = two_sum(error_0, error_1);
+    let (middle, rest_1) = two_sum(second[0], second[1]);
+    let (errors, rest_2) = two_sum(errors, second[2]);
+    let (middle, rest_3) = two_sum(middle, errors);
+    let (s, middle) = two_sum(s, middle);
+    let rest = ((third[0] + third[1]) + third[2]) + ((rest_0 + rest_1) + (rest_2 + rest_3));
+    let low = middle + rest;
+    (s, low, CANCELLING_ERROR * (size[0] + size[1] + size[2]) + 1.125 * U * low.abs())
+}
+
+/// The inverse; for `CANCELS` see [`parts`].
+#[inline(always)]
+pub(super) fn inverse<const FMA: bool, const CANCELS: bool>(m: &[f64; 9]) -> Option<DMat3> {
+    let (Adjugate { h, l, b }, reciprocal) = parts::<FMA, CANCELS>(m)?;
     let mut inverse = [0.0; 9];
     let mut certain = true;
     for k in 0..9 {
@@ -73,10 +131,10 @@ pub(super) fn inverse<const FMA: bool>(m: &[f64; 9]) -> Option<DMat3> {
     certain.then(|| DMat3::from_cols_array(&inverse))
 }
 
-/// The sums of the rows of the inverse.
+/// The sums of the rows of the inverse; for `CANCELS` see [`parts`].
 #[inline(always)]
-pub(super) fn row_sums<const FMA: bool>(m: &[f64; 9]) -> Option<DVec3> {
-    let (Adjugate { h, l, b }, reciprocal) = parts::<FMA>(m)?;
+pub(super) fn row_sums<const FMA: bool, const CANCELS: bool>(m: &[f64; 9]) -> Option<DVec3> {
+    let (Adjugate { h, l, b }, reciprocal) = parts::<FMA, CANCELS>(m)?;
     let mut sums = [0.0; 3];
     let mut certain = true;
     for k in 0..3 {

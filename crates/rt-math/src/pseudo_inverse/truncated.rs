@@ -5,29 +5,124 @@
 //! matrix `A`, `s_1 s_2` of its cofactors, `1 / s_3` of its inverse. The singular vectors that go with the first two, `u_1`,
 //! `v_1` and `u_3`, `v_3`, give the missing ones as `u_2 = u_3 x u_1` and `v_2 = v_3 x v_1`. So no small value is ever
 //! read off beside a large one, and the tolerance may be far below the precision of a double.
+//!
+//! Before that, [`estimate`] decides where the singular values are far apart: then powers of the matrix and of its cofactors give
+//! their vectors.
 
 use glam::{DMat3, DVec3};
 
 use super::PseudoInverse;
-use crate::exact::{mantissa_and_exponent, scale, two_prod};
+use super::regular::{adjugate, determinant};
+use crate::exact::{U, mantissa_and_exponent, power_of_two, scale, two_prod};
+use crate::fma_dispatch;
+
+/// Whether nothing is to be dropped, by the norms of the finite `m` and its pseudo-inverse; `false` if they leave it open.
+#[inline(always)]
+pub(super) fn keeps_all(m: &DMat3, rtol: f64, exact: &PseudoInverse) -> bool {
+    // s_r / s_1 is at least 1 / (|A| |A+|), with Frobenius norms; the margin is far above the error of the norms, unless
+    // squares underflow, which the lower limit excludes.
+    const MARGIN: f64 = 1.0 - 1e-6;
+    const SMALLEST_SQUARE: f64 = 1e-200;
+    let (a, x) = (square(m), square(&exact.matrix));
+    exact.rank <= 1 || a > SMALLEST_SQUARE && x > SMALLEST_SQUARE && rtol * (a * x).sqrt() < MARGIN
+}
+
+/// The square of the Frobenius norm.
+#[inline(always)]
+fn square(m: &DMat3) -> f64 {
+    m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()
+}
+
+/// What a glance at the singular values says.
+pub(super) enum Estimate {
+    /// Some are dropped: the answer.
+    Dropped(PseudoInverse),
+    /// None is.
+    Kept,
+    /// They are too near to the threshold, or to each other, or out of range.
+    Unknown,
+}
+
+/// Where singular values are apart by [`FAR`] and from the threshold by a small part of it: the answer, or that nothing is to be
+/// dropped.
+pub(super) fn estimate(m: &DMat3, rtol: f64) -> Estimate {
+    // In the range of `adjugate`, with what is smaller by up to 2^-160.
+    let shift = 60 - exponent(m);
+    match estimate_scaled(&scale(*m, shift), rtol) {
+        Estimate::Dropped(PseudoInverse { matrix, rank }) => {
+            Estimate::Dropped(PseudoInverse { matrix: scale(matrix, shift), rank })
+        }
+        other => other,
+    }
+}
+
+fma_dispatch! {
+    fn estimate_scaled(m: &DMat3, rtol: f64) -> Estimate = estimate_kernel;
+}
+
+/// Values whose ratio is below this leave less than the rounding errors of each other, squared, in what one multiplication gives.
+const FAR: f64 = power_of_two(-27);
+
+#[inline(always)]
+fn estimate_kernel<const FMA: bool>(m: &DMat3, rtol: f64) -> Estimate {
+    const MORE: f64 = 1.0 + 1e-6;
+    const SMALLEST_SQUARE: f64 = 1e-200;
+    let entries = m.to_cols_array();
+    let Some(adjugate) = adjugate::<FMA>(&entries) else { return Estimate::Unknown };
+    let (high, low, bound) = determinant::<FMA>(&entries, &adjugate);
+    let (d, d_error) = ((high + low).abs(), bound + U * high.abs());
+    let cofactors = DMat3::from_cols_array(adjugate.high()).transpose();
+    // Between s_1^2 and three times that, and the same for (s_1 s_2)^2.
+    let (f, p) = (square(m), square(&cofactors));
+    if !(p > SMALLEST_SQUARE) {
+        return Estimate::Unknown;
+    }
+    let root = p.sqrt();
+    if 3.0 * root * MORE <= rtol.min(FAR) * f {
+        // A (A^T g), where A^T g is along v_1.
+        let right = m.transpose() * longest(m);
+        let left = *m * right;
+        let matrix = outer(right / left.length_squared(), left);
+        return Estimate::Dropped(PseudoInverse { matrix, rank: 1 });
+    }
+    // At least rank 2; s_3 / s_2 is at most 3 |D| s_1 / (s_1 s_2)^2.
+    if root < 1.75 * rtol * f || 3.0 * d * f.sqrt() > FAR * p {
+        return Estimate::Unknown;
+    }
+    // So s_1^2 + s_2^2 and s_1 s_2 are known, hence s_1 to half the digits at least, and s_3 is |D| / (s_1 s_2).
+    let threshold = rtol * root * (0.5 * (f + (f * f - 4.0 * p).max(0.0).sqrt())).sqrt();
+    if d - d_error >= MORE * threshold {
+        return Estimate::Kept;
+    }
+    if d <= d_error || (d + d_error) * MORE > threshold {
+        return Estimate::Unknown; // perhaps singular: then the rank is exact, and so is the answer
+    }
+    // The cofactors are s_1 s_2 u_3 v_3^T: their product with this is along v_3, and with that along u_3.
+    let right = cofactors.transpose() * longest(&cofactors);
+    let left = cofactors * right;
+    // The adjugate of rank 2, with these as cofactors.
+    let over = left / left.length_squared();
+    let row = |i: usize, j: usize| over.cross(right[i] * m.col(j) - right[j] * m.col(i));
+    let matrix = DMat3::from_cols(row(1, 2), row(2, 0), row(0, 1)).transpose();
+    Estimate::Dropped(PseudoInverse { matrix, rank: 2 })
+}
+
+/// The longest column.
+#[inline(always)]
+fn longest(m: &DMat3) -> DVec3 {
+    let longer = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
+    longer(longer(m.x_axis, m.y_axis), m.z_axis)
+}
 
 /// The pseudo-inverse of the finite `m` with a tolerance, given the exact one and the function that finds such.
+#[cold]
+#[inline(never)]
 pub(super) fn truncated(
     m: &DMat3,
     rtol: f64,
     exact: PseudoInverse,
     pseudo_inverse: fn(DMat3) -> PseudoInverse,
 ) -> PseudoInverse {
-    // s_r / s_1 is at least 1 / (|A| |A+|), with Frobenius norms; the margin is far above the error of the norms, unless
-    // squares underflow, which the lower limit excludes.
-    const MARGIN: f64 = 1.0 - 1e-6;
-    const SMALLEST_SQUARE: f64 = 1e-200;
-    let square = |m: &DMat3| m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared();
-    let (a, x) = (square(m), square(&exact.matrix));
-    if exact.rank <= 1 || a > SMALLEST_SQUARE && x > SMALLEST_SQUARE && rtol * (a * x).sqrt() < MARGIN {
-        return exact;
-    }
-
     let shift = -exponent(m);
     let a = scale(*m, shift);
     let first = Singular::largest(&a);
