@@ -11,11 +11,12 @@
 //! 4. exact integers: the same, for coefficients of very different size, and what over- or underflows.
 
 use core::cmp::Ordering;
+use core::hint::cold_path;
 
 use crate::exact::stage::{Stage, decided};
 use crate::exact::{
     DoubleDouble, Dyadic, Fixed, Window, fast_two_sum, mantissa_and_exponent, power_of_two, remainder,
-    round_if_certain, rounded_ends, scale, two_prod,
+    round_if_certain, rounded_ends, scale, two_prod, two_sum,
 };
 use crate::fma_dispatch;
 
@@ -62,8 +63,8 @@ const D_FLOOR: f64 = power_of_two(-900);
 /// Bound of the filter's error in a root: this part of it, and an absolute one for what may underflow.
 const FILTER_ERROR: f64 = power_of_two(-73);
 const FILTER_ERROR_FLOOR: f64 = power_of_two(-500);
-/// Bound of the relative error of a root in double-double: 31 u² is needed.
-const DOUBLE_DOUBLE_ERROR: f64 = power_of_two(-101);
+/// Bound of the relative error of a root in double-double: 54 u² is needed.
+const DOUBLE_DOUBLE_ERROR: f64 = power_of_two(-100);
 
 #[inline(always)]
 fn kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Roots {
@@ -82,7 +83,8 @@ fn kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Roots {
             return roots;
         }
     }
-    slow_path(a, b, c)
+    cold_path();
+    double_double(a, b, c)
 }
 
 /// The two roots in doubles with corrections, if these decide their rounding; `d` is `D` to 31 bits or better.
@@ -129,7 +131,7 @@ fn multiply_add<const FMA: bool>(x: f64, y: f64, z: f64) -> f64 {
     if FMA { x.mul_add(y, z) } else { x * y + z }
 }
 
-/// All that the filter does not decide.
+/// All that is left after the filter and double-double without scaling.
 #[cold]
 #[inline(never)]
 fn slow_path(a: f64, b: f64, c: f64) -> Roots {
@@ -145,7 +147,8 @@ fn slow_path(a: f64, b: f64, c: f64) -> Roots {
             let other = negated_quotient(b, a);
             if other.is_sign_negative() { Roots::Two(other, 0.0) } else { Roots::Two(0.0, other) }
         }
-        (false, _, false) => double_double(a, b, c)
+        (false, _, false) => scaled_roots(a, b, c)
+            .inspect(|_| decided(Stage::DoubleDouble))
             .or_else(|| fixed::<1, 2>(a, b, c))
             .or_else(|| fixed::<2, 4>(a, b, c))
             .unwrap_or_else(|| integers(a, b, c)),
@@ -186,23 +189,25 @@ impl Balanced {
 }
 
 fma_dispatch! {
-    /// The second stage; `a` and `c` are not zero.
-    fn double_double(a: f64, b: f64, c: f64) -> Option<Roots> = double_double_kernel;
+    /// All that the filter does not decide: in double-double, if the coefficients need no scaling.
+    fn double_double(a: f64, b: f64, c: f64) -> Roots = double_double_kernel;
 }
 
 /// Coefficients of such sizes need no scaling.
 const ORDINARY: core::ops::Range<f64> = power_of_two(-256)..power_of_two(256);
 
 #[inline(always)]
-fn double_double_kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Option<Roots> {
+fn double_double_kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Roots {
     let ordinary = |x: f64| ORDINARY.contains(&x.abs());
-    let roots = if ordinary(a) & ordinary(c) & (ordinary(b) | (b == 0.0)) {
-        double_double_roots::<FMA>(a, b, c)?
-    } else {
-        scaled_roots(a, b, c)?
-    };
-    decided(Stage::DoubleDouble);
-    Some(roots)
+    if ordinary(a)
+        && ordinary(c)
+        && (ordinary(b) || b == 0.0)
+        && let Some(roots) = double_double_roots::<FMA>(a, b, c)
+    {
+        decided(Stage::DoubleDouble);
+        return roots;
+    }
+    slow_path(a, b, c)
 }
 
 /// The roots of an equation for which nothing over- or underflows.
@@ -215,11 +220,20 @@ fn double_double_roots<const FMA: bool>(a: f64, b: f64, c: f64) -> Option<Roots>
     if d.high() == 0.0 {
         return Some(Roots::One(negated_quotient(b, 2.0 * a)));
     }
-    let number = DoubleDouble::<FMA>::new;
-    let z = number(b.abs()) + d.sqrt();
-    let sign = number(2f64.copysign(-b));
-    let round = |x: DoubleDouble<FMA>| round_if_certain(x.high(), x.low(), x.high().abs() * DOUBLE_DOUBLE_ERROR);
-    let (x, y) = (round(z / (sign * number(a)))?, round(sign * number(c) / z)?);
+    // z, with all divisions but those by d and z off the critical path
+    let root = d.high().sqrt();
+    let root_low = (remainder::<FMA>(d.high(), root, root) + d.low()) * (0.5 / root);
+    let (z, z_error) = two_sum(b.abs(), root);
+    let z_low = z_error + root_low;
+    let sign = 2f64.copysign(-b);
+    let (denominator, numerator) = (sign * a, sign * c);
+    let quotient = |n: f64, n_low: f64, d: f64, d_low: f64| {
+        let inverse = 1.0 / d;
+        let x = n * inverse;
+        let rest = remainder::<FMA>(n, x, d) + multiply_add::<FMA>(x, -d_low, n_low);
+        round_if_certain(x, rest * inverse, x.abs() * DOUBLE_DOUBLE_ERROR)
+    };
+    let (x, y) = (quotient(z, z_low, denominator, 0.0)?, quotient(numerator, 0.0, z, z_low)?);
     Some(if x < y { Roots::Two(x, y) } else { Roots::Two(y, x) })
 }
 
@@ -317,6 +331,11 @@ mod tests {
             let same = core::mem::discriminant(&found) == core::mem::discriminant(&other) && bits(found) == bits(other);
             assert!(same, "{input}: {found:?} without FMA, {other:?} with it");
         }
+        if [a, c].iter().all(|x| ORDINARY.contains(&x.abs())) && (b == 0.0 || ORDINARY.contains(&b.abs())) {
+            for roots in [double_double_roots::<false>(a, b, c), double_double_roots::<true>(a, b, c)] {
+                assert!(roots.is_none_or(|roots| bits(roots) == bits(found)), "{input}: {found:?}, {roots:?}");
+            }
+        }
         let [a, b, c] = [a, b, c].map(exact);
         let truth = Quadratic { a, b, c };
         let is_root = |x: f64, larger: bool| is_rounding_of(x, |m| truth.compare(larger, m));
@@ -342,9 +361,9 @@ mod tests {
                 check(a, b, c);
             }
             // three calls each
-            for (sum, count) in total.iter_mut().zip(decisions()) {
-                *sum += count;
-            }
+            let [filter, double_double, _, fixed, integers] = decisions();
+            let counts = [filter, double_double, fixed, integers];
+            total.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
         }
         total
     }

@@ -6,11 +6,13 @@
 //! integers of any size where the vectors have components of very different size. A filter in plain doubles before that
 //! would decide nothing, since it is the value that is asked for and not a verdict.
 
+use core::hint::cold_path;
+
 use glam::DVec3;
 
 use crate::exact::stage::{Stage, decided};
 use crate::exact::vector::dot;
-use crate::exact::{Dyadic, Fixed, Window, power_of_two, remainder, rounded_ends, two_diff, two_prod, two_sum};
+use crate::exact::{Dyadic, Fixed, U, Window, power_of_two, remainder, rounded_ends, two_diff, two_prod, two_sum};
 use crate::fma_dispatch;
 
 /// Returns `incident` mirrored in the plane through the origin with the given normal: `v - 2 (v·n) / (n·n) n`.
@@ -51,9 +53,31 @@ fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64)
         decided(Stage::DoubleDouble);
         return DVec3::from_array(upper);
     }
+    cold_path();
     // What is certain is not computed again.
-    let lower = if in_range { lower } else { [f64::NAN; 3] };
+    let (mut lower, mut upper) = if in_range { (lower, upper) } else { ([f64::NAN; 3], upper) };
+    if in_range & is_suitable(&[vx, vy, vz, nx, ny, nz]) {
+        for i in 0..3 {
+            if lower[i] != upper[i] {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                (lower[i], upper[i]) = cancelling(v[i], v[j], v[k], n[i], n[j], n[k]);
+            }
+        }
+        if all_equal(&lower, &upper) {
+            decided(Stage::Triple);
+            return DVec3::from_array(upper);
+        }
+    }
     slow_path(v, n, &lower, &upper)
+}
+
+/// Whether triple precision is exact, and worth while: each is zero or in a range where no error term of a product of three
+/// underflows, and one has more than 27 bits. Where all have less, components vanish exactly.
+#[inline(always)]
+fn is_suitable(numbers: &[f64; 6]) -> bool {
+    const ORDINARY: core::ops::RangeInclusive<f64> = power_of_two(-100)..=power_of_two(100);
+    let in_range = numbers.iter().fold(true, |all, x| all & ((*x == 0.0) | ORDINARY.contains(&x.abs())));
+    in_range && numbers.iter().fold(0, |bits, x| bits | x.to_bits()) << 38 != 0
 }
 
 /// Returns what [`reflect`] returns, and whether it is that: `false` where double-double does not decide the rounding.
@@ -116,6 +140,60 @@ fn dot_and_size<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
     let (xy, xy_low) = two_sum(x, y);
     let (sum, sum_low) = two_sum(xy, z);
     (sum, (xy_low + sum_low) + ((x_low + y_low) + z_low), (x.abs() + y.abs()) + z.abs())
+}
+
+fma_dispatch! {
+    /// A lower and an upper bound of the first component, rounded, in triple precision: for one that nearly vanishes. The others
+    /// follow by turning the indices.
+    fn cancelling(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> (f64, f64) = cancelling_kernel;
+}
+
+/// Bounds of the error of the numerator: this part of the magnitudes of its terms, and this part of its low double; and of the
+/// quotient, this part of it.
+const TERMS_ERROR: f64 = 512.0 * U * U * U;
+const LOW_ERROR: f64 = 16.0 * U;
+const QUOTIENT_ERROR: f64 = 128.0 * U * U;
+
+#[inline(always)]
+fn cancelling_kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> (f64, f64) {
+    // (v_x (n_y² + n_z² - n_x²) - 2 n_x (v_y n_y + v_z n_z)) / (n·n): each bracket as three doubles, the numerator as two.
+    let (a, a_low) = two_prod::<FMA>(nx, nx);
+    let (b, b_low) = two_prod::<FMA>(ny, ny);
+    let (c, c_low) = two_prod::<FMA>(nz, nz);
+    let (bc, bc_low) = two_sum(b, c);
+    let (s, s_low) = two_diff(bc, a);
+    let (products_low, rest_0) = two_sum(b_low, c_low);
+    let (sums_low, rest_1) = two_sum(bc_low, s_low);
+    let (products_low, rest_2) = two_diff(products_low, a_low);
+    let (s_low, rest_3) = two_sum(sums_low, products_low);
+    let s_rest = (rest_0 + rest_1) + (rest_2 + rest_3);
+
+    let (p, p_low) = two_prod::<FMA>(vy, ny);
+    let (q, q_low) = two_prod::<FMA>(vz, nz);
+    let (t, t_low) = two_sum(p, q);
+    let (products_low, rest_0) = two_sum(p_low, q_low);
+    let (t_low, rest_1) = two_sum(t_low, products_low);
+    let t_rest = rest_0 + rest_1;
+
+    let k = -2.0 * nx;
+    let ((vs, vs_low), (kt, kt_low)) = (two_prod::<FMA>(vx, s), two_prod::<FMA>(k, t));
+    let ((vs_second, vs_third), (kt_second, kt_third)) = (two_prod::<FMA>(vx, s_low), two_prod::<FMA>(k, t_low));
+    let (sum, sum_low) = two_sum(vs, kt);
+    let (first, rest_0) = two_sum(vs_low, kt_low);
+    let (second, rest_1) = two_sum(vs_second, kt_second);
+    let (second, rest_2) = two_sum(first, second);
+    let (second, rest_3) = two_sum(second, sum_low);
+    let third = (vs_third + kt_third) + (vx * s_rest + k * t_rest);
+    let (high, middle) = two_sum(sum, second);
+    let low = middle + (third + ((rest_0 + rest_1) + (rest_2 + rest_3)));
+
+    let (nn, nn_low) = two_sum(bc, a);
+    let nn_low = (nn_low + bc_low) + ((b_low + c_low) + a_low);
+    let inverse = 1.0 / nn;
+    let x = high * inverse;
+    let x_low = (remainder::<FMA>(high, x, nn) + (low - x * nn_low)) * inverse;
+    let terms = vx.abs() * nn + k.abs() * (p.abs() + q.abs());
+    rounded_ends(x, x_low, (TERMS_ERROR * terms + LOW_ERROR * low.abs()) * inverse + QUOTIENT_ERROR * x.abs())
 }
 
 /// All that double-double does not decide; components whose bounds are equal are known.
@@ -188,14 +266,22 @@ mod tests {
         let Reflection { numerators, denominator } = Reflection::new(v, n);
         for i in 0..3 {
             assert!(is_rounded_quotient(found[i], &numerators[i], &denominator), "{input}, wrong in component {i}");
+            if is_suitable(&[v, n].concat().try_into().expect("six numbers")) {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let bounds = [cancelling_kernel::<false>, cancelling_kernel::<true>]
+                    .map(|bounds| bounds(v[i], v[j], v[k], n[i], n[j], n[k]));
+                for (lower, upper) in bounds {
+                    assert!(lower <= found[i] && found[i] <= upper, "{input}, {lower:e} to {upper:e} in component {i}");
+                }
+            }
         }
         found
     }
 
-    /// Checks a class of pairs; returns how often double-double, fixed-point numbers and integers decided.
-    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 2]) -> [usize; 3] {
+    /// Checks a class of pairs; returns how often double-double, triple precision, fixed-point numbers and integers decided.
+    fn check_class(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 2]) -> [usize; 4] {
         let mut rng = Random::new(seed);
-        let mut total = [0; 3];
+        let mut total = [0; 4];
         for _ in 0..cases(1_000_000) {
             let [v, n] = vectors(&mut rng);
             if n == [0.0; 3] || !v.iter().chain(&n).all(|x| x.is_finite()) {
@@ -203,8 +289,8 @@ mod tests {
             }
             decisions();
             check(v, n);
-            let [_, double_double, fixed, integers] = decisions();
-            total = [total[0] + double_double, total[1] + fixed, total[2] + integers];
+            let [_, counts @ ..] = decisions();
+            total.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
         }
         total
     }
@@ -215,28 +301,43 @@ mod tests {
 
     #[test]
     fn benign_vectors_are_decided_by_double_double() {
-        let [double_double, fixed, integers] =
+        let [double_double, triple, fixed, integers] =
             check_class(30, |rng| [vector(rng, -4..2), [0; 3].map(|_| rng.with_exponent(-4..2))]);
-        assert!(double_double > 50 * (fixed + integers), "{double_double} {fixed} {integers}");
+        assert!(double_double > 50 * (triple + fixed + integers), "{double_double} {triple} {fixed} {integers}");
     }
 
     #[test]
     fn vectors_of_any_doubles_are_reflected_correctly() {
-        let [double_double, _, integers] =
+        let [double_double, .., integers] =
             check_class(31, |rng| [[0; 3].map(|_| rng.finite()), [0; 3].map(|_| rng.finite())]);
         assert!(double_double > 100 && integers > 10_000, "{double_double} {integers}");
     }
 
     #[test]
     fn a_component_that_nearly_vanishes_is_correct() {
-        let [_, fixed, _] = check_class(32, |rng| {
+        let [_, triple, ..] = check_class(32, |rng| {
             // a vector is mirrored twice, and then into the axes' directions: r is near (0, 0, z)
             let mut normal = vector(rng, -4..4);
             normal[0] += 1.0;
             let image = reflect(DVec3::new(0.0, 0.0, rng.with_exponent(-3..3)), normal.into());
             [image.to_array(), normal]
         });
-        assert!(fixed > 1_000, "{fixed}");
+        assert!(triple > 1_000, "{triple}");
+    }
+
+    #[test]
+    fn a_component_that_nearly_vanishes_is_correct_at_the_ends_of_the_range() {
+        let [_, triple, ..] = check_class(38, |rng| {
+            let ends = [-100, -60, -3, 0, 58, 97];
+            let mut number = || {
+                let exponent = ends[rng.below(6)] + rng.integer(0..3);
+                rng.with_exponent(exponent..exponent + 1)
+            };
+            let ([x, y, z], [b, c]) = ([number(), number(), number()], [number(), number()]);
+            let a = 2.0 * x * (b * y + c * z) / (y * y + z * z - x * x);
+            [[f64::from_bits(a.to_bits() + rng.below(3) as u64), b, c], [x, y, z]]
+        });
+        assert!(triple > 1_000, "{triple}");
     }
 
     #[test]
@@ -252,7 +353,7 @@ mod tests {
     #[test]
     fn exact_midpoints_round_to_even() {
         let mut ties = 0;
-        let [_, fixed, _] = check_class(34, |rng| {
+        let [.., fixed, _] = check_class(34, |rng| {
             // n = (1, 2, 2), v·n = 9 j: the image is v - 2 j n, with 54 bits and more
             let j = i64::try_from(rng.bits() >> 12).expect("52 bits") | 1 << 51;
             let y = i64::try_from(rng.bits() >> 11).expect("53 bits");
@@ -308,7 +409,8 @@ mod tests {
                 })
             })
         });
-        assert!(counts.into_iter().all(|count| count > 1_000), "{counts:?}");
+        let [double_double, _, fixed, integers] = counts; // sums that cancel are another test's
+        assert!(double_double > 1_000 && fixed > 1_000 && integers > 1_000, "{counts:?}");
     }
 
     #[test]

@@ -123,7 +123,7 @@ mod tests {
             let [a, b] = vectors(&mut rng);
             decisions();
             let found = dot_sign(a.into(), b.into());
-            let [filter, _, _, integers] = decisions();
+            let [filter, .., integers] = decisions();
             total = [total[0] + filter, total[1] + integers];
             let sum = (0..3).map(|i| exact(a[i]) * exact(b[i])).fold(exact(0.0), |sum, term| sum + term);
             assert_eq!(found, Some(sum.cmp(&exact(0.0))), "{a:?} . {b:?}");
@@ -182,7 +182,7 @@ mod tests {
             let [a, b, n] = vectors(&mut rng);
             decisions();
             let found = difference_dot_sign(a.into(), b.into(), n.into());
-            let [filter, _, _, integers] = decisions();
+            let [filter, .., integers] = decisions();
             total = [total[0] + filter, total[1] + integers];
             let sum =
                 (0..3).map(|i| (exact(a[i]) - exact(b[i])) * exact(n[i])).fold(exact(0.0), |sum, term| sum + term);

@@ -44,6 +44,8 @@ count_stages! {
         Filter,
         /// Double-double.
         DoubleDouble,
+        /// Three doubles, where a sum cancels.
+        Triple,
         /// Fixed-point numbers within a window.
         Fixed,
         /// Integers of any size.

@@ -74,7 +74,7 @@ fn estimate_kernel<const FMA: bool>(m: &DMat3, rtol: f64) -> Estimate {
     let cofactors = DMat3::from_cols_array(adjugate.high()).transpose();
     // Between s_1^2 and three times that, and the same for (s_1 s_2)^2.
     let (f, p) = (square(m), square(&cofactors));
-    if !(p > SMALLEST_SQUARE) {
+    if p < SMALLEST_SQUARE {
         return Estimate::Unknown;
     }
     let root = p.sqrt();
