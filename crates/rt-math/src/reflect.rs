@@ -6,8 +6,6 @@
 //! integers of any size where the vectors have components of very different size. A filter in plain doubles before that
 //! would decide nothing, since it is the value that is asked for and not a verdict.
 
-use core::hint::cold_path;
-
 use glam::DVec3;
 
 use crate::exact::stage::{Stage, decided};
@@ -53,22 +51,9 @@ fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64)
         decided(Stage::DoubleDouble);
         return DVec3::from_array(upper);
     }
-    cold_path();
     // What is certain is not computed again.
-    let (mut lower, mut upper) = if in_range { (lower, upper) } else { ([f64::NAN; 3], upper) };
-    if in_range & is_suitable(&[vx, vy, vz, nx, ny, nz]) {
-        for i in 0..3 {
-            if lower[i] != upper[i] {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                (lower[i], upper[i]) = cancelling(v[i], v[j], v[k], n[i], n[j], n[k]);
-            }
-        }
-        if all_equal(&lower, &upper) {
-            decided(Stage::Triple);
-            return DVec3::from_array(upper);
-        }
-    }
-    slow_path(v, n, &lower, &upper)
+    let lower = if in_range { lower } else { [f64::NAN; 3] };
+    slow_path(v, n, lower, upper)
 }
 
 /// Whether triple precision is exact, and worth while: each is zero or in a range where no error term of a product of three
@@ -196,18 +181,30 @@ fn cancelling_kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f6
     rounded_ends(x, x_low, (TERMS_ERROR * terms + LOW_ERROR * low.abs()) * inverse + QUOTIENT_ERROR * x.abs())
 }
 
-/// All that double-double does not decide; components whose bounds are equal are known.
+/// All that double-double does not decide; components whose bounds are equal are known. The lower ones are NaN out of range.
 #[cold]
 #[inline(never)]
-fn slow_path(v: DVec3, n: DVec3, lower: &[f64; 3], upper: &[f64; 3]) -> DVec3 {
+fn slow_path(v: DVec3, n: DVec3, mut lower: [f64; 3], mut upper: [f64; 3]) -> DVec3 {
+    if !lower[0].is_nan() && is_suitable(&[v.x, v.y, v.z, n.x, n.y, n.z]) {
+        for i in 0..3 {
+            if lower[i] != upper[i] {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                (lower[i], upper[i]) = cancelling(v[i], v[j], v[k], n[i], n[j], n[k]);
+            }
+        }
+        if all_equal(&lower, &upper) {
+            decided(Stage::Triple);
+            return DVec3::from_array(upper);
+        }
+    }
     if !(v.is_finite() && n.is_finite()) || n == DVec3::ZERO {
         return DVec3::NAN;
     }
     if (0..3).all(|i| v[i] == 0.0 || n[i] == 0.0) {
         return v + DVec3::ZERO; // perpendicular, term by term: unchanged, but for the sign of zeros
     }
-    fixed::<1, 2, 3>(v, n, lower, upper)
-        .or_else(|| fixed::<2, 4, 6>(v, n, lower, upper))
+    fixed::<1, 2, 3>(v, n, &lower, &upper)
+        .or_else(|| fixed::<2, 4, 6>(v, n, &lower, &upper))
         .unwrap_or_else(|| integers(v, n))
 }
 
