@@ -1,12 +1,12 @@
 //! Real roots of a quadratic, correctly rounded.
 //!
 //! With `z = |b| + √D` and `D = b² - 4ac` the roots are `-sign(b) z / 2a` and `-sign(b) 2c / z`: no subtraction of like
-//! numbers remains but that in `D`. Three stages, each handing what it cannot decide to the next:
+//! numbers remains but that in `D`. Four stages, each handing what it cannot decide to the next:
 //!
 //! 1. doubles: unless `D` cancels by more than 2⁻²⁰, its sign is certain and `z` good to 42 bits; one Newton step on
 //!    `z (z - 2|b|) + 4ac = 0`, which `z` solves, doubles that, and both quotients get their remainder as a correction;
-//! 2. double-double, of coefficients scaled by powers of two: `D` of either sign or zero is certain, whatever the
-//!    cancellation;
+//! 2. double-double, of coefficients scaled by powers of two where they need it: `D` of either sign or zero is certain,
+//!    whatever the cancellation;
 //! 3. fixed-point numbers: what lies too near a midpoint of two doubles;
 //! 4. exact integers: the same, for coefficients of very different size, and what over- or underflows.
 

@@ -1,10 +1,10 @@
 //! Reflection of a vector, correctly rounded.
 //!
 //! Each component `v_i - k n_i`, with `k = 2 (v·n) / (n·n)`, is computed in double-double: both dot products with the exact
-//! errors of their terms, the quotient with its remainder, the difference with its error. The components that then lie too
-//! near a midpoint of two doubles, or cancel, or are out of range, are quotients of exact fixed-point numbers, and of
-//! integers of any size where the vectors have components of very different size. A filter in plain doubles before that
-//! would decide nothing, since it is the value that is asked for and not a verdict.
+//! errors of their terms, the quotient with its remainder, the difference with its error. Components that cancel are then
+//! computed in triple precision. Those that lie too near a midpoint of two doubles, or are out of range, are quotients of exact
+//! fixed-point numbers, and of integers of any size where the vectors have components of very different size. A filter in
+//! plain doubles before that would decide nothing, since it is the value that is asked for and not a verdict.
 
 use glam::DVec3;
 
