@@ -193,3 +193,37 @@ impl<const FMA: bool> Reciprocal<FMA> {
 fn fused<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FMA { a.mul_add(b, c) } else { a * b + c }
 }
+
+#[cfg(test)]
+mod tests {
+    use oracle::{Random, cases, exact};
+
+    use super::*;
+
+    #[test]
+    fn determinant_in_triple_precision_keeps_its_bound_however_small() {
+        let (mut random, mut beyond_the_last_rounding) = (Random::new(6), 0);
+        for _ in 0..cases(100_000) {
+            // Two proportional columns but for one row, of any size: the determinant is that row's alone.
+            let mut number = || random.with_exponent(-3..3);
+            let (a, b) = ([number(), number(), number()], [number(), number(), number()]);
+            let mut columns = [a, b, a.map(|x| 2.0 * x)];
+            let row = 1 + random.below(2);
+            let tiny = random.integer(-99..0);
+            columns[0][row] = random.with_exponent(tiny..tiny + 1);
+            columns[2][row] = random.with_exponent(tiny..tiny + 1);
+            random.shuffle(&mut columns);
+            let m: [f64; 9] = columns.concat().try_into().expect("nine entries");
+            let [[a, b, c], [d, e, f], [g, h, i]] = columns.map(|column| column.map(exact));
+            let determinant = &a * (&e * &i - &f * &h) - &d * (&b * &i - &c * &h) + &g * (&b * &f - &c * &e);
+            for (s, low, bound) in [cancelling_determinant::<false>(&m), cancelling_determinant::<true>(&m)] {
+                let error = exact(s) + exact(low) - &determinant;
+                let square = &error * &error;
+                assert!(square <= exact(bound) * exact(bound), "{m:?} gives {s:e} + {low:e}, {bound:e}");
+                let rounding = exact(1.125 * U * low.abs());
+                beyond_the_last_rounding += usize::from(square > &rounding * &rounding);
+            }
+        }
+        assert!(beyond_the_last_rounding > 100, "{beyond_the_last_rounding}");
+    }
+}
