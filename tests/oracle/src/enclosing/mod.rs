@@ -98,17 +98,17 @@ fn combination(weights: &[Big], vectors: &[Vector]) -> Vector {
 fn solve(mut matrix: Vec<Vec<Big>>, right: Vec<Big>) -> Option<Vec<Big>> {
     let n = right.len();
     matrix.iter_mut().zip(right).for_each(|(row, x)| row.push(x));
+    // What is left of a singular matrix after rounding is far below this.
+    let tiny = matrix.iter().flatten().map(|x| x.clone().abs()).max()? * power_of_two(-250);
     for i in 0..n {
         let size = |k: &usize| matrix[*k][i].clone().abs();
-        let pivot = (i..n).max_by(|j, k| size(j).cmp(&size(k)))?;
+        let pivot = (i..n).max_by(|j, k| size(j).cmp(&size(k))).filter(|pivot| size(pivot) > tiny)?;
         matrix.swap(i, pivot);
-        if sign(&matrix[i][i]) == Ordering::Equal {
-            return None;
-        }
         let pivot_row = matrix[i].clone();
         for row in matrix.iter_mut().enumerate().filter(|(k, _)| *k != i).map(|(_, row)| row) {
             let factor = &row[i] / &pivot_row[i];
-            row.iter_mut().zip(&pivot_row).for_each(|(x, above)| *x = &*x - &factor * above);
+            // Only to the right of the pivot: to the left are zeros, and rounding would fill them.
+            row.iter_mut().zip(&pivot_row).skip(i + 1).for_each(|(x, above)| *x = &*x - &factor * above);
         }
     }
     Some((0..n).map(|i| &matrix[i][n] / &matrix[i][i]).collect())
@@ -129,5 +129,34 @@ mod tests {
         assert_eq!(radius(&vec![Ball::new([1.0; 3], 2.0); 5]), 2.0);
         let around = |radius| corners.iter().all(|corner| Ball::new([0.5; 3], radius).contains(corner));
         assert!(!around(0.866_025_403) && around(0.866_025_404));
+    }
+
+    /// Four spheres with centers in a plane span no space, and what rounding leaves of that must not count.
+    #[test]
+    fn centers_in_a_plane_or_on_a_line_are_no_trap() {
+        let random = &mut crate::Random::new(1);
+        for round in 0..200 {
+            let balls: Vec<Ball> = (0..6)
+                .map(|_| {
+                    let (x, y) = (random.whole(-9, 9), random.whole(-9, 9));
+                    let y = if round % 2 == 0 { y } else { 3.0 * x };
+                    Ball::new([x, y, x + 7.0 * y], f64::from(round % 3) * random.whole(0, 5))
+                })
+                .collect();
+            let radius = smallest_radius(&balls).expect("finite");
+            let pair = |a: &Ball, b: &Ball| smallest_radius(&[a.clone(), b.clone()]).expect("finite");
+            let least = balls.iter().flat_map(|a| balls.iter().map(move |b| pair(a, b))).max().expect("not empty");
+            // Jung's theorem for balls: between that of the widest pair and twice that.
+            assert!(radius >= &least * (exact(1.0) - power_of_two(-190)), "{balls:?}");
+            assert!(radius <= least * exact(2.0), "{balls:?}");
+            if round % 6 == 1 {
+                assert_eq!(
+                    rounded(&radius),
+                    rounded(
+                        &balls.iter().flat_map(|a| balls.iter().map(move |b| pair(a, b))).max().expect("not empty")
+                    )
+                );
+            }
+        }
     }
 }
