@@ -97,9 +97,9 @@ fn combination(weights: &[Big], vectors: &[Vector]) -> Vector {
 /// Solves linear equations by elimination; `None` if the matrix is singular.
 fn solve(mut matrix: Vec<Vec<Big>>, right: Vec<Big>) -> Option<Vec<Big>> {
     let n = right.len();
-    matrix.iter_mut().zip(right).for_each(|(row, x)| row.push(x));
     // What is left of a singular matrix after rounding is far below this.
     let tiny = matrix.iter().flatten().map(|x| x.clone().abs()).max()? * power_of_two(-250);
+    matrix.iter_mut().zip(right).for_each(|(row, x)| row.push(x));
     for i in 0..n {
         let size = |k: &usize| matrix[*k][i].clone().abs();
         let pivot = (i..n).max_by(|j, k| size(j).cmp(&size(k))).filter(|pivot| size(pivot) > tiny)?;
