@@ -321,7 +321,8 @@ impl Segment {
         let reach = radius + fused::<FMA>(MARGIN, far, UNDERFLOW);
         let (x, y, z) = (fused::<FMA>(s, u, x), fused::<FMA>(s, v, y), fused::<FMA>(s, w, z));
         let aside = fused::<FMA>(x, x, fused::<FMA>(y, y, z * z));
-        Passage { nearest: s, chord: fused::<FMA>(reach, reach, -aside) }
+        // (Not fused: where both squares overflow, this must be NaN.)
+        Passage { nearest: s, chord: reach * reach - aside }
     }
 
     /// Where the segment may enter the sphere; `None` if it surely misses it.
@@ -569,5 +570,18 @@ mod tests {
             }
         }
         assert!(met > 5_000, "{met}");
+    }
+
+    #[test]
+    fn a_node_is_met_from_where_squares_overflow() {
+        for far in [1e150, 1e160, 1e290, 1e300, 1e307] {
+            let ray = Ray::new(DVec3::splat(-far), DVec3::ONE).unwrap();
+            let prepared = PreparedRay::new(&ray, AHEAD);
+            let segment = Segment::new(&prepared, 1.0);
+            let node = Node { center: [[0.0; 2]; 3], radius: [1.0; 2], halves: [Child { first: 0, count: 1 }; 2] };
+            for passage in [segment.pass::<false>(&node, 0), segment.pass::<true>(&node, 1)] {
+                assert!(segment.enter(&passage).is_some(), "from {far}");
+            }
+        }
     }
 }
