@@ -1,5 +1,5 @@
-//! Reading and writing PPM, raw and plain, beside the `image` crate, netpbm where it is installed (a process of its own,
-//! so its start and the pipes count), and the copy of as many bytes, which no reader can beat.
+//! Reading and writing PPM, raw and plain, beside the `image` crate, netpbm where it is installed (a process of its
+//! own, so its start and the pipes count), and the copy of as many bytes, which no reader can beat.
 
 use std::hint::black_box;
 use std::io::Write;

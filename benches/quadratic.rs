@@ -1,8 +1,8 @@
 //! `solve_quadratic` beside the textbook formula, the usual repair of it, and kurbo.
 //!
-//! `predictable`: two roots always. `random`: half the equations have none, and there are too many to be learnt by heart, so that
-//! branch misses count. `double_roots`: the discriminant is exactly zero, `grazing`: it nearly is; no filter helps. `RUSTFLAGS="--cfg
-//! rt_math_without_fma" cargo bench --bench quadratic` measures without hardware FMA.
+//! `predictable`: two roots always. `random`: half the equations have none, and there are too many to be learnt by
+//! heart, so that branch misses count. `double_roots`: the discriminant is exactly zero, `grazing`: it nearly is; no
+//! filter helps. `RUSTFLAGS="--cfg rt_math_without_fma" cargo bench --bench quadratic` measures without hardware FMA.
 
 use std::hint::black_box;
 

@@ -1,4 +1,5 @@
-//! Ray and triangle: exact verdicts, correctly rounded `t` and weights, beside Möller-Trumbore and Woop's watertight test.
+//! Ray and triangle: exact verdicts, correctly rounded `t` and weights, beside Möller-Trumbore and Woop's watertight
+//! test.
 //!
 //! `any` is the verdict alone, by the same bounds of `t` that the tree works with; `closest` is the verdict and `t`.
 

@@ -1,8 +1,8 @@
-//! The reader of meshes agrees with the `tobj` crate on well-formed files of triangles. (Of larger faces that crate makes
-//! fans, whatever their shape.)
+//! The reader of meshes agrees with the `tobj` crate on well-formed files of triangles. (Of larger faces that crate
+//! makes fans, whatever their shape.)
 //!
-//! It does not use that crate: `tobj` 4.0.5 says no line in its errors, gives a vertex without a colour that of the next
-//! which has one, and overflows on a face with a huge normal index.
+//! It does not use that crate: `tobj` 4.0.5 says no line in its errors, gives a vertex without a colour that of the
+//! next which has one, and overflows on a face with a huge normal index.
 
 use std::fmt::Write;
 

@@ -1,4 +1,5 @@
-//! Two reports compared: errors must be equal, times alike. And one report on its own: whether it has all that text needs.
+//! Two reports compared: errors must be equal, times alike. And one report on its own: whether it has all that text
+//! needs.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

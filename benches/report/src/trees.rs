@@ -1,5 +1,5 @@
-//! What the trees cost to build and what they save: a plain loop, the report's tree over the list as it is and sorted in
-//! space, and the fast tree, one ray at a time and many at once.
+//! What the trees cost to build and what they save: a plain loop, the report's tree over the list as it is and sorted
+//! in space, and the fast tree, one ray at a time and many at once.
 //!
 //! The scene is a cloud of equal spheres in a cube, which fill about a tenth of it however many they are; the rays come
 //! from all sides and aim at points in the cube. The spheres are listed in random order, so that halves of the list are

@@ -1,5 +1,5 @@
-//! Whatever happens to the report while it saves, be it a kill or a full disk, each of its files is the old one or the new one,
-//! whole.
+//! Whatever happens to the report while it saves, be it a kill or a full disk, each of its files is the old one or the
+//! new one, whole.
 #![cfg(unix)]
 
 use std::fs;

@@ -1,5 +1,5 @@
-//! The program `report`: text and plots follow from the JSON alone, a check fails on a changed error, and what cannot be
-//! read is told by name.
+//! The program `report`: text and plots follow from the JSON alone, a check fails on a changed error, and what cannot
+//! be read is told by name.
 
 use std::fs;
 use std::path::Path;

@@ -12,7 +12,8 @@ const BITS: u32 = 21;
 /// How often a cell's points are told apart by a finer grid: together as good as all the bits of a double.
 const LEVELS: u32 = 4;
 
-/// Sorts the indices of points along the curve through their bounding box; equal points by index. The points are finite.
+/// Sorts the indices of points along the curve through their bounding box; equal points by index. The points are
+/// finite.
 pub(crate) fn sort(indices: &mut [u32], point: &(dyn Fn(u32) -> DVec3 + Sync)) {
     sort_cell(indices, point, LEVELS);
 }

@@ -57,9 +57,9 @@ impl Ray {
 
     /// Returns the point `origin + t direction`, rounded twice per component.
     ///
-    /// With `u = 2^-53` and `t` the correctly rounded parameter of a hit, each component is off the exact hit by at most
-    /// `u (2.01 |t direction| + 1.01 |point|)`, barring over- and underflow; `docs/numerics.md`, section 5, has the
-    /// proof.
+    /// With `u = 2^-53` and `t` the correctly rounded parameter of a hit, each component is off the exact hit by at
+    /// most `u (2.01 |t direction| + 1.01 |point|)`, barring over- and underflow; `docs/numerics.md`, section 5, has
+    /// the proof.
     #[inline]
     #[must_use]
     pub fn at(&self, t: f64) -> DVec3 {
@@ -68,9 +68,9 @@ impl Ray {
 
     /// The largest component of the direction in magnitude.
     ///
-    /// The filters are proved for directions where this lies between 2^-100 and 2^100. For any other direction, and for an
-    /// origin whose coordinates add up to infinity, this and the squares are NaN: every comparison with an error bound then
-    /// fails, and the exact path decides.
+    /// The filters are proved for directions where this lies between 2^-100 and 2^100. For any other direction, and for
+    /// an origin whose coordinates add up to infinity, this and the squares are NaN: every comparison with an error
+    /// bound then fails, and the exact path decides.
     #[inline(always)]
     pub(crate) fn reach(&self) -> f64 {
         self.reach

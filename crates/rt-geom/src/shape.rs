@@ -23,8 +23,8 @@ pub enum Shape {
 /// What a query did, for reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Visits {
-    /// Tests of bounds: in a [`Bvh`](crate::Bvh) of up to sixteen at once, in a [`SphereTree`](crate::SphereTree) of one
-    /// sphere.
+    /// Tests of bounds: in a [`Bvh`](crate::Bvh) of up to sixteen at once, in a [`SphereTree`](crate::SphereTree) of
+    /// one sphere.
     pub nodes: usize,
     /// Primitives that met the exact test.
     pub tests: usize,

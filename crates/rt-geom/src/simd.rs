@@ -9,14 +9,14 @@ use rt_math::exact::two_prod_with;
 
 /// Compiles a kernel for each instruction set that earns its copy, and runs the copy for the processor.
 ///
-/// On x86 these are AVX-512, AVX2 (with fused multiply-add) and the baseline, SSE2; elsewhere those of `fearless_simd`. All
-/// give the same bits. There are two forms:
+/// On x86 these are AVX-512, AVX2 (with fused multiply-add) and the baseline, SSE2; elsewhere those of `fearless_simd`.
+/// All give the same bits. There are two forms:
 ///
-/// - `dispatch!(level, simd => expression)` runs an expression with the instructions of a [`Level`], of which every kernel in
-///   the expression takes `simd`. What the expression uses passes through memory.
-/// - `dispatch! { fn name(argument: Type, ..) -> Type = kernel; }` defines a function that calls `kernel::<FMA, S>(simd,
-///   argument, ..)`. The arguments pass in registers: for kernels of a few nanoseconds, with vectors of four lanes at most,
-///   so without a copy for AVX-512.
+/// - `dispatch!(level, simd => expression)` runs an expression with the instructions of a [`Level`], of which every
+///   kernel in the expression takes `simd`. What the expression uses passes through memory.
+/// - `dispatch! { fn name(argument: Type, ..) -> Type = kernel; }` defines a function that calls
+///   `kernel::<FMA, S>(simd, argument, ..)`. The arguments pass in registers: for kernels of a few nanoseconds, with
+///   vectors of four lanes at most, so without a copy for AVX-512.
 ///
 /// Kernels are `#[inline(always)]`, together with all that they call on the hot path.
 macro_rules! dispatch {

@@ -8,9 +8,10 @@
 //! Halving a list halves space only as far as the list is sorted in space. [`SphereTree::new`] takes the list as it
 //! is, [`SphereTree::sorted`] sorts it along a Hilbert curve first (`hilbert.rs`).
 //!
-//! Where the spheres of a part would cost more tests than they are expected to save, its primitives are tested one after
-//! the other. A ray that meets a sphere of radius `R` meets a sphere of radius `r` within it with the probability `r²/R²`,
-//! if it comes from anywhere (J. Goldsmith, J. Salmon, "Automatic Creation of Object Hierarchies for Ray Tracing", 1987).
+//! Where the spheres of a part would cost more tests than they are expected to save, its primitives are tested one
+//! after the other. A ray that meets a sphere of radius `R` meets a sphere of radius `r` within it with the probability
+//! `r²/R²`, if it comes from anywhere (J. Goldsmith, J. Salmon, "Automatic Creation of Object Hierarchies for Ray
+//! Tracing", 1987).
 
 use std::ops::Range;
 
@@ -46,7 +47,8 @@ pub struct SphereTree {
     scale: f64,
 }
 
-/// A part of two halves, with the minimal spheres of both; scaled. A radius is infinite where no finite sphere encloses.
+/// A part of two halves, with the minimal spheres of both; scaled. A radius is infinite where no finite sphere
+/// encloses.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Node {
@@ -63,7 +65,8 @@ struct Child {
     count: u32,
 }
 
-/// What testing both spheres of a node costs, in tests of primitives. So many primitives and fewer are never worth a node.
+/// What testing both spheres of a node costs, in tests of primitives. So many primitives and fewer are never worth a
+/// node.
 const PAIR_COST: usize = 8;
 
 /// The rounding errors of a sphere's test, relative to its radius and its distance from the ray's origin:
@@ -80,7 +83,8 @@ const LONGEST: f64 = power_of_two(960);
 const DEPTH: usize = 32;
 
 impl SphereTree {
-    /// Builds the tree over the list as it is, in parallel on rayon's current pool. Any input will do, also none at all.
+    /// Builds the tree over the list as it is, in parallel on rayon's current pool. Any input will do, also none at
+    /// all.
     ///
     /// # Panics
     /// With 2^32 primitives or more.
@@ -91,8 +95,8 @@ impl SphereTree {
         Self::build(Leaves::new(spheres, triangles, index), &bounds)
     }
 
-    /// Builds the tree over the list sorted along a Hilbert curve through the centers, so that halves of the list lie in
-    /// different parts of space. Answers speak of the list as it was.
+    /// Builds the tree over the list sorted along a Hilbert curve through the centers, so that halves of the list lie
+    /// in different parts of space. Answers speak of the list as it was.
     ///
     /// # Panics
     /// With 2^32 primitives or more.
@@ -113,7 +117,7 @@ impl SphereTree {
     }
 
     fn build(leaves: Leaves, bounds: &[Option<Sphere>]) -> Self {
-        let mut parts = Vec::with_capacity(2 * bounds.len());
+        let mut parts = Vec::with_capacity(bounds.len() / 2);
         halve(0..bounds.len(), &mut parts);
         let spheres = spheres_of_parts(&parts, bounds);
         // The last part is the whole. (None: an empty tree, or one that no finite sphere encloses.)
@@ -131,7 +135,8 @@ impl SphereTree {
         tree
     }
 
-    /// For each part how many of its primitives are tested one after the other; 0 if its halves are visited in its place.
+    /// For each part how many of its primitives are tested one after the other; 0 if its halves are visited in its
+    /// place.
     fn runs(&self, parts: &[Subtree], spheres: &[Option<Sphere>]) -> Vec<u32> {
         let radius = |at: usize| spheres[at].map_or(f64::INFINITY, |sphere| sphere.radius());
         let equal = |a: usize, b: usize| self.leaves.placed(a) == self.leaves.placed(b);
@@ -255,13 +260,15 @@ fn bounds_of(spheres: &[Sphere], triangles: &[Triangle]) -> Vec<Option<Sphere>> 
 fn spheres_of_parts(parts: &[Subtree], bounds: &[Option<Sphere>]) -> Vec<Option<Sphere>> {
     let point = Sphere::new(glam::DVec3::ZERO, 0.0).expect("a valid sphere");
     let leaves: Vec<Sphere> = bounds.iter().map(|bound| bound.unwrap_or(point)).collect();
-    let mut spheres = enclosing_nodes(&leaves, parts);
-    for place in (0..bounds.len()).filter(|&place| bounds[place].is_none()) {
-        for (sphere, part) in spheres.iter_mut().zip(parts) {
-            *sphere = sphere.filter(|_| !part.leaves.contains(&place));
-        }
-    }
-    spheres
+    // How many primitives before each place have no sphere.
+    let mut without = vec![0];
+    without.extend(bounds.iter().scan(0, |count, bound| {
+        *count += usize::from(bound.is_none());
+        Some(*count)
+    }));
+    let all_have = |part: &Subtree| without[part.leaves.start] == without[part.leaves.end];
+    let spheres = enclosing_nodes(&leaves, parts).into_iter().zip(parts);
+    spheres.map(|(sphere, part)| sphere.filter(|_| all_have(part))).collect()
 }
 
 fn short(count: usize) -> u32 {
@@ -309,8 +316,8 @@ impl Segment {
 
     /// How the line passes a sphere of a node.
     ///
-    /// With `v` from the center to the origin, the line is nearest to the center at `s = -v.u`, and passes it there at the
-    /// distance `|v + s u|`. NaN, from numbers out of range, counts as met.
+    /// With `v` from the center to the origin, the line is nearest to the center at `s = -v.u`, and passes it there at
+    /// the distance `|v + s u|`. NaN, from numbers out of range, counts as met.
     #[inline(always)]
     fn pass<const FMA: bool>(&self, node: &Node, side: usize) -> Passage {
         let [cx, cy, cz] = node.center;
@@ -524,6 +531,26 @@ mod tests {
         let tree = SphereTree::new(vec![ball(-far, 0.0, 0.0, 1.0), ball(far, 0.0, 0.0, far)], vec![]);
         let ray = Ray::new(DVec3::new(1.0, 0.0, 0.0), DVec3::X).unwrap();
         assert_eq!(tree.closest(&ray, AHEAD).map(|hit| hit.index), Some(1));
+    }
+
+    #[test]
+    fn a_triangle_without_a_finite_sphere_is_hit_among_many_others() {
+        let far = f64::MAX;
+        let huge =
+            Triangle::new(DVec3::new(-far, -far, 0.0), DVec3::new(far, -far, 0.0), DVec3::new(0.0, far, 0.0)).unwrap();
+        let small = |i: i32| {
+            let at = DVec3::new(3.0 * f64::from(i), 0.0, 5.0);
+            Triangle::new(at, at + DVec3::X, at + DVec3::Y).unwrap()
+        };
+        let mut triangles: Vec<Triangle> = (0..40).map(small).collect();
+        triangles.extend([huge; 3]);
+        assert!(bounds_of(&[], &triangles)[40].is_none());
+        for tree in [SphereTree::new, SphereTree::sorted] {
+            let tree = tree(vec![], triangles.clone());
+            let hit = |z: f64| tree.closest(&Ray::new(DVec3::new(6.25, 0.25, z), DVec3::NEG_Z).unwrap(), AHEAD);
+            assert_eq!(hit(9.0).map(|hit| hit.index), Some(2));
+            assert_eq!(hit(4.0).map(|hit| hit.index), Some(40));
+        }
     }
 
     #[test]

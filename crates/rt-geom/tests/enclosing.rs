@@ -1,5 +1,5 @@
-//! `enclosing_sphere` encloses, in exact arithmetic, and is minimal, by a certificate in 400-bit arithmetic, on every class of
-//! sets that is known to be awkward.
+//! `enclosing_sphere` encloses, in exact arithmetic, and is minimal, by a certificate in 400-bit arithmetic, on every
+//! class of sets that is known to be awkward.
 
 use glam::DVec3;
 use oracle::enclosing::Ball;
@@ -156,8 +156,8 @@ const CLASSES: &[(&str, Make)] = &[
     }),
 ];
 
-/// A point from 10^8 to 10^300 away, and the size of a set there, or both of them 10^-300 times as large: from as large as
-/// its distance to smaller than the spacing of doubles.
+/// A point from 10^8 to 10^300 away, and the size of a set there, or both of them 10^-300 times as large: from as large
+/// as its distance to smaller than the spacing of doubles.
 fn anywhere(random: &mut Random) -> (DVec3, f64) {
     let distance = 10.0_f64.powf(8.0 + 292.0 * random.share());
     let distance = if random.below(4) == 0 { distance * 1e-300 } else { distance };
@@ -183,8 +183,8 @@ fn contains(outer: &Sphere, inner: &Sphere) -> bool {
     ball(outer).contains(&ball(inner))
 }
 
-/// The excess of an answer over what doubles can express, relative to the radius. (Any center that costs at most one spacing of
-/// doubles is good enough; that shows where sets lie anywhere.)
+/// The excess of an answer over what doubles can express, relative to the radius. (Any center that costs at most one
+/// spacing of doubles is good enough; that shows where sets lie anywhere.)
 fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
     for sphere in spheres {
         assert!(contains(&answer.sphere, sphere), "{class}: {sphere:?} sticks out of {answer:?} in {spheres:?}");

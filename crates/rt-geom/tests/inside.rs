@@ -1,5 +1,5 @@
-//! Whether a point is inside a triangle, or in its plane, is exact, and its barycentric weights are correctly rounded, for
-//! every finite input.
+//! Whether a point is inside a triangle, or in its plane, is exact, and its barycentric weights are correctly rounded,
+//! for every finite input.
 
 use std::cmp::Ordering;
 

@@ -1,5 +1,5 @@
-//! How often a line meets a sphere, whether a ray does in a range, and on which side a point lies are exact, and every `t`
-//! is correctly rounded, for every finite input.
+//! How often a line meets a sphere, whether a ray does in a range, and on which side a point lies are exact, and every
+//! `t` is correctly rounded, for every finite input.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! The trees give the plain loop's answer, bit for bit: index and `t`, on every kind of scene and every instruction set.
+//! The trees give the plain loop's answer, bit for bit: index and `t`, on every kind of scene and every instruction
+//! set.
 //!
 //! `RT_LONG=1` casts a million rays at each scene, fewer where exact integers answer them.
 

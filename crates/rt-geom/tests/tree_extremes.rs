@@ -1,5 +1,5 @@
-//! The trees give the plain loop's answer, bit for bit, from one end of the range of doubles to the other: for scenes of
-//! any size and place, directions of any length, and ranges that end within a few doubles of a hit.
+//! The trees give the plain loop's answer, bit for bit, from one end of the range of doubles to the other: for scenes
+//! of any size and place, directions of any length, and ranges that end within a few doubles of a hit.
 //!
 //! `RT_LONG=1` casts 300,000 rays.
 

@@ -261,7 +261,8 @@ fn the_number_of_triangles_hit_is_exact() {
     }
 }
 
-/// From outside, a ray at a vertex or an edge may pass through or only touch: crossings are even, on a convex mesh 0 or 2.
+/// From outside, a ray at a vertex or an edge may pass through or only touch: crossings are even, on a convex mesh 0 or
+/// 2.
 #[test]
 fn rays_from_outside_cross_an_even_number_of_times() {
     let mut rng = Random::new(5);

@@ -174,7 +174,8 @@ fn readers_take_memory_in_proportion_to_the_bytes() {
         }
     }
 
-    // A whole picture: its samples, one byte each up to maxval 255, and at most 64 MiB; a known length gives the exact size.
+    // A whole picture: its samples, one byte each up to maxval 255, and at most 64 MiB; a known length gives the exact
+    // size.
     for (maxval, bytes_per_sample) in [(255, 1), (65535, 2)] {
         let pixmap = Pixmap::new(3000, 2000, maxval, vec![maxval; 18_000_000]).unwrap();
         for encoding in [Encoding::Raw, Encoding::Plain] {

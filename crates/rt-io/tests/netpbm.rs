@@ -1,4 +1,5 @@
-//! netpbm and libjpeg-turbo agree: written files are its files byte for byte, and what it converts has the pixels that we decode.
+//! netpbm and libjpeg-turbo agree: written files are its files byte for byte, and what it converts has the pixels that
+//! we decode.
 //!
 //! Each test says so and passes where they are not installed.
 
@@ -231,7 +232,8 @@ fn jpeg_is_near_to_djpeg() {
     }
 }
 
-/// All that libjpeg can write: whole ratios, at most ten blocks a unit. What the decoder gets wrong is among the refused.
+/// All that libjpeg can write: whole ratios, at most ten blocks a unit. What the decoder gets wrong is among the
+/// refused.
 #[test]
 fn jpeg_of_every_sampling_is_near_to_djpeg_or_refused() {
     if !has_libjpeg_turbo() {

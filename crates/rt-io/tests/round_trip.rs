@@ -23,8 +23,8 @@ fn encode(pixmap: &Pixmap, encoding: Encoding) -> Vec<u8> {
     bytes
 }
 
-/// The rules of a plain PPM in the most obvious way: without comments, by splitting at white space. `None` if the text is
-/// not a P3 of at most 10^4 samples that this can judge.
+/// The rules of a plain PPM in the most obvious way: without comments, by splitting at white space. `None` if the text
+/// is not a P3 of at most 10^4 samples that this can judge.
 fn obvious_plain(text: &str) -> Option<Pixmap> {
     let mut words = text.strip_prefix("P3")?.split_ascii_whitespace().map(|word| word.parse::<u16>().ok());
     let (width, height, maxval) = (words.next()??, words.next()??, words.next()??);

@@ -1,7 +1,7 @@
 //! Reflection, pseudo-inverse and quadratic solving on glam's f64 vectors.
 //!
-//! The number of roots and the rank are exact, and every value returned is the double nearest to the exact result for the
-//! doubles given. No function allocates, loops without bound, or panics on any bit pattern.
+//! The number of roots and the rank are exact, and every value returned is the double nearest to the exact result for
+//! the doubles given. No function allocates, loops without bound, or panics on any bit pattern.
 //!
 //! ```
 //! use rt_math::{Roots, solve_quadratic};

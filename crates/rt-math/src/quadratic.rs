@@ -36,11 +36,11 @@ pub enum Roots {
 fma_dispatch! {
     /// Returns the real roots of `a x² + b x + c`, in ascending order.
     ///
-    /// With `a == 0` the equation is linear; `a == b == 0` has no root, or `Roots::All` when `c == 0` too. A double root
-    /// is returned once. The number of roots is exact and each root is correctly rounded, for all finite coefficients:
-    /// two distinct roots may round to the same double, a root beyond the range of doubles is infinite, one that
-    /// underflows is a zero with the root's sign, and a root that is exactly zero is +0.0. With a coefficient that is
-    /// infinite or NaN the answer is `Roots::None`. `docs/numerics.md`, section 2, has the proof.
+    /// With `a == 0` the equation is linear; `a == b == 0` has no root, or `Roots::All` when `c == 0` too. A double
+    /// root is returned once. The number of roots is exact and each root is correctly rounded, for all finite
+    /// coefficients: two distinct roots may round to the same double, a root beyond the range of doubles is infinite,
+    /// one that underflows is a zero with the root's sign, and a root that is exactly zero is +0.0. With a coefficient
+    /// that is infinite or NaN the answer is `Roots::None`. `docs/numerics.md`, section 2, has the proof.
     ///
     /// Source of the form without cancellation: W. Kahan, "On the Cost of Floating-Point Computation Without
     /// Extra-Precise Arithmetic", 2004.
@@ -160,12 +160,12 @@ fn negated_quotient(n: f64, d: f64) -> f64 {
     if n == 0.0 { 0.0 } else { -n / d }
 }
 
-/// If `b² / ac` is larger than the square of two to this power, or smaller than one over it, what is left out of a root is far
-/// below what is proved of the others: `docs/numerics.md`, section 2.
+/// If `b² / ac` is larger than the square of two to this power, or smaller than one over it, what is left out of a root
+/// is far below what is proved of the others: `docs/numerics.md`, section 2.
 const LOPSIDED: i32 = 200;
 
-/// The equation of `y`, where `x = 2^k y`, with its coefficients times powers of two: exactly the given one, with `a` in
-/// `1/2..2` and `c` in `1..2`.
+/// The equation of `y`, where `x = 2^k y`, with its coefficients times powers of two: exactly the given one, with `a`
+/// in `1/2..2` and `c` in `1..2`.
 struct Balanced {
     a: f64,
     /// In `1..2`, or zero.
@@ -415,7 +415,8 @@ mod tests {
     #[test]
     fn roots_next_to_a_midpoint_are_decided_by_fixed_point_numbers() {
         let [_, _, fixed, _] = check_class(24, |rng| {
-            // M odd of 54 bits is a midpoint; (x - M) (x + w) = x^2 - (M - w) x - M w, whose last coefficient is rounded
+            // M odd of 54 bits is a midpoint; (x - M) (x + w) = x^2 - (M - w) x - M w, whose last coefficient is
+            // rounded
             let midpoint = (1_u64 << 53) | rng.bits() >> 11 | 1;
             let w = (rng.bits() % (2 << rng.below(20))) | 1;
             let power = |rng: &mut Random| 2f64.powi(rng.integer(-100..100));

@@ -1,10 +1,11 @@
 //! Reflection of a vector, correctly rounded.
 //!
-//! Each component `v_i - k n_i`, with `k = 2 (v·n) / (n·n)`, is computed in double-double: both dot products with the exact
-//! errors of their terms, the quotient with its remainder, the difference with its error. Components that cancel are then
-//! computed in triple precision. Those that lie too near a midpoint of two doubles, or are out of range, are quotients of exact
-//! fixed-point numbers, and of integers of any size where the vectors have components of very different size. A filter in
-//! plain doubles before that would decide nothing, since it is the value that is asked for and not a verdict.
+//! Each component `v_i - k n_i`, with `k = 2 (v·n) / (n·n)`, is computed in double-double: both dot products with the
+//! exact errors of their terms, the quotient with its remainder, the difference with its error. Components that cancel
+//! are then computed in triple precision. Those that lie too near a midpoint of two doubles, or are out of range, are
+//! quotients of exact fixed-point numbers, and of integers of any size where the vectors have components of very
+//! different size. A filter in plain doubles before that would decide nothing, since it is the value that is asked for
+//! and not a verdict.
 
 use glam::DVec3;
 
@@ -16,8 +17,8 @@ use crate::fma_dispatch;
 /// Returns `incident` mirrored in the plane through the origin with the given normal: `v - 2 (v·n) / (n·n) n`.
 ///
 /// The normal may have any length but zero. Each component is correctly rounded, for all finite vectors: one beyond the
-/// range of doubles is infinite, one that underflows is a zero with the sign of the exact value, and one that is exactly
-/// zero is +0.0. With a zero normal, or an infinite or NaN component in either vector, every component is NaN.
+/// range of doubles is infinite, one that underflows is a zero with the sign of the exact value, and one that is
+/// exactly zero is +0.0. With a zero normal, or an infinite or NaN component in either vector, every component is NaN.
 /// `docs/numerics.md`, section 4, has the proof.
 ///
 /// ```
@@ -56,8 +57,8 @@ fn kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64)
     slow_path(v, n, lower, upper)
 }
 
-/// Whether triple precision is exact, and worth while: each is zero or in a range where no error term of a product of three
-/// underflows, and one has more than 27 bits. Where all have less, components vanish exactly.
+/// Whether triple precision is exact, and worth while: each is zero or in a range where no error term of a product of
+/// three underflows, and one has more than 27 bits. Where all have less, components vanish exactly.
 #[inline(always)]
 fn is_suitable(numbers: &[f64; 6]) -> bool {
     const ORDINARY: core::ops::RangeInclusive<f64> = power_of_two(-100)..=power_of_two(100);
@@ -67,8 +68,8 @@ fn is_suitable(numbers: &[f64; 6]) -> bool {
 
 /// Returns what [`reflect`] returns, and whether it is that: `false` where double-double does not decide the rounding.
 ///
-/// It has no branch, so that a loop over many vectors can be compiled into vector instructions. `FMA` means the same as for
-/// [`two_prod`], and the bits do not depend on it.
+/// It has no branch, so that a loop over many vectors can be compiled into vector instructions. `FMA` means the same as
+/// for [`two_prod`], and the bits do not depend on it.
 ///
 /// ```
 /// use glam::DVec3;
@@ -90,8 +91,8 @@ fn all_equal(lower: &[f64; 3], upper: &[f64; 3]) -> bool {
     (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2])
 }
 
-/// A lower and an upper bound of each component, rounded: where they are equal, so is the component. That holds if the last
-/// value says so: the vectors are in the range of double-double.
+/// A lower and an upper bound of each component, rounded: where they are equal, so is the component. That holds if the
+/// last value says so: the vectors are in the range of double-double.
 #[inline(always)]
 fn bounds<const FMA: bool>(incident: DVec3, normal: DVec3) -> ([f64; 3], [f64; 3], bool) {
     let (v, n) = (incident.to_array(), normal.to_array());
@@ -128,20 +129,21 @@ fn dot_and_size<const FMA: bool>(a: [f64; 3], b: [f64; 3]) -> (f64, f64, f64) {
 }
 
 fma_dispatch! {
-    /// A lower and an upper bound of the first component, rounded, in triple precision: for one that nearly vanishes. The others
-    /// follow by turning the indices.
+    /// A lower and an upper bound of the first component, rounded, in triple precision: for one that nearly vanishes.
+    /// The others follow by turning the indices.
     fn cancelling(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> (f64, f64) = cancelling_kernel;
 }
 
-/// Bounds of the error of the numerator: this part of the magnitudes of its terms, and this part of its low double; and of the
-/// quotient, this part of it.
+/// Bounds of the error of the numerator: this part of the magnitudes of its terms, and this part of its low double; and
+/// of the quotient, this part of it.
 const TERMS_ERROR: f64 = 512.0 * U * U * U;
 const LOW_ERROR: f64 = 16.0 * U;
 const QUOTIENT_ERROR: f64 = 128.0 * U * U;
 
 #[inline(always)]
 fn cancelling_kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f64, nz: f64) -> (f64, f64) {
-    // (v_x (n_y² + n_z² - n_x²) - 2 n_x (v_y n_y + v_z n_z)) / (n·n): each bracket as three doubles, the numerator as two.
+    // (v_x (n_y² + n_z² - n_x²) - 2 n_x (v_y n_y + v_z n_z)) / (n·n): each bracket as three doubles, the numerator as
+    // two.
     let (a, a_low) = two_prod::<FMA>(nx, nx);
     let (b, b_low) = two_prod::<FMA>(ny, ny);
     let (c, c_low) = two_prod::<FMA>(nz, nz);
@@ -181,7 +183,8 @@ fn cancelling_kernel<const FMA: bool>(vx: f64, vy: f64, vz: f64, nx: f64, ny: f6
     rounded_ends(x, x_low, (TERMS_ERROR * terms + LOW_ERROR * low.abs()) * inverse + QUOTIENT_ERROR * x.abs())
 }
 
-/// All that double-double does not decide; components whose bounds are equal are known. The lower ones are NaN out of range.
+/// All that double-double does not decide; components whose bounds are equal are known. The lower ones are NaN out of
+/// range.
 #[cold]
 #[inline(never)]
 fn slow_path(v: DVec3, n: DVec3, mut lower: [f64; 3], mut upper: [f64; 3]) -> DVec3 {
@@ -208,8 +211,8 @@ fn slow_path(v: DVec3, n: DVec3, mut lower: [f64; 3], mut upper: [f64; 3]) -> DV
         .unwrap_or_else(|| integers(v, n))
 }
 
-/// The components that are not known, in fixed-point numbers: vectors of `N` limbs, dot products of `S = 2 N`, numerators of
-/// `V = 3 N`.
+/// The components that are not known, in fixed-point numbers: vectors of `N` limbs, dot products of `S = 2 N`,
+/// numerators of `V = 3 N`.
 #[inline(always)]
 fn fixed<const N: usize, const S: usize, const V: usize>(
     v: DVec3,
@@ -275,7 +278,8 @@ mod tests {
         found
     }
 
-    /// Checks a class of pairs; returns how often double-double, triple precision, fixed-point numbers and integers decided.
+    /// Checks a class of pairs; returns how often double-double, triple precision, fixed-point numbers and integers
+    /// decided.
     fn check_class(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 2]) -> [usize; 4] {
         let mut rng = Random::new(seed);
         let mut total = [0; 4];

@@ -1,7 +1,7 @@
 //! `pseudo_inverse_with_tolerance` drops the singular values that it should and keeps its stated accuracy.
 //!
-//! The references are matrices with known singular values and vectors, made of rational rotations, so that neither they nor
-//! their truncated pseudo-inverses come from another algorithm; and the exact function, where nothing is dropped.
+//! The references are matrices with known singular values and vectors, made of rational rotations, so that neither they
+//! nor their truncated pseudo-inverses come from another algorithm; and the exact function, where nothing is dropped.
 
 use glam::{DMat3, DVec3};
 use oracle::matrices::CLASSES;

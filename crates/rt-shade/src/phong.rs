@@ -283,8 +283,8 @@ mod tests {
         assert!(rounding_would_err > 500, "{rounding_would_err}");
     }
 
-    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from the
-    /// other; returns whether the rounded cosine would put it on another side.
+    /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from
+    /// the other; returns whether the rounded cosine would put it on another side.
     fn check_side(point: DVec3, light: DVec3, normal: DVec3) -> bool {
         use crate::phong_batch::{SurfacePoint, phong_batch};
         let side = sign(&dot(&sub(&vector(light), &vector(point)), &vector(normal)));

@@ -18,11 +18,13 @@ pub(crate) enum ElementName {
 /// Finds what a name stands for. `docs/scene-format.md` has the rule for those who write files:
 ///
 /// 1. A number is the atomic number.
-/// 2. Else the first run of letters counts. As a whole and in any case it is a symbol, `D` or `T`, or names a dummy atom.
-/// 3. In capitals alone or small letters alone, two to four: the first two are the symbol if there is one, else the first.
-///    Here `CA`, `CD1`, `HG2`, which look like a position in a protein, are their first letter; so are they under 2, but for
-///    a name of no more than the two letters and an element up to uranium.
-/// 4. With a capital first: the symbol of two letters before another capital; of two letters that are no symbol, the first.
+/// 2. Else the first run of letters counts. As a whole and in any case it is a symbol, `D` or `T`, or names a dummy
+///    atom.
+/// 3. In capitals alone or small letters alone, two to four: the first two are the symbol if there is one, else the
+///    first. Here `CA`, `CD1`, `HG2`, which look like a position in a protein, are their first letter; so are they
+///    under 2, but for a name of no more than the two letters and an element up to uranium.
+/// 4. With a capital first: the symbol of two letters before another capital; of two letters that are no symbol, the
+///    first.
 ///
 /// Two letters look like a position in a protein where the first is H, or one of C, N, O, S with A, B, D, E, G, H or Z,
 /// for the Greek letters.

@@ -6,13 +6,15 @@
 //! by just that triangle. So where all triangles turn the polygon's way, as here, each point is covered as often as the
 //! polygon winds around it: once inside a simple polygon, never outside. G. H. Meisters, "Polygons Have Ears", 1975.
 //!
-//! - A polygon first turns so that it starts from its least corner, so the cut does not depend on which is listed first.
-//! - A corner in the middle of a side is no ear. It becomes the corner of some triangle, and the neighbouring face, which has
-//!   it too, meets the same sides: no gap opens.
-//! - A corner may be listed twice, as where a cut joins a hole to the outline. Such a corner blocks a triangle that it is a
-//!   corner of only if one of its own sides leads into it.
-//! - A convex polygon without such a corner is a fan and takes linear time. Else the corners that can block, those that are not convex, stand in a tree
-//!   of boxes: usually a few microseconds a corner, at worst a time that grows with the square of their number.
+//! - A polygon first turns so that it starts from its least corner, so the cut does not depend on which is listed
+//!   first.
+//! - A corner in the middle of a side is no ear. It becomes the corner of some triangle, and the neighbouring face,
+//!   which has it too, meets the same sides: no gap opens.
+//! - A corner may be listed twice, as where a cut joins a hole to the outline. Such a corner blocks a triangle that it
+//!   is a corner of only if one of its own sides leads into it.
+//! - A convex polygon without such a corner is a fan and takes linear time. Else the corners that can block, those that
+//!   are not convex, stand in a tree of boxes: usually a few microseconds a corner, at worst a time that grows with the
+//!   square of their number.
 
 use std::cmp::Ordering;
 use std::collections::VecDeque;

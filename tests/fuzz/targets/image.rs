@@ -1,4 +1,5 @@
-//! Any bytes: the decoders of PNG, JPEG and TIFF give a picture or an error, and the fence around them has nothing to do.
+//! Any bytes: the decoders of PNG, JPEG and TIFF give a picture or an error, and the fence around them has nothing to
+//! do.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

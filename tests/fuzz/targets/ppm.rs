@@ -1,5 +1,5 @@
-//! Any bytes: the PPM reader gives a valid picture or an error, the same for known and unknown length, and what it reads
-//! survives being written and read again.
+//! Any bytes: the PPM reader gives a valid picture or an error, the same for known and unknown length, and what it
+//! reads survives being written and read again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

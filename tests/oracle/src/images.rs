@@ -52,7 +52,8 @@ pub fn tiff_in_chunks(tags: &[Tag<'_>], chunks: &[&[u8]], [offsets, lengths]: [u
     bytes
 }
 
-/// A JPEG whose coefficients are all zero: one code of one bit stands for nothing, be it a difference or the end of a block.
+/// A JPEG whose coefficients are all zero: one code of one bit stands for nothing, be it a difference or the end of a
+/// block.
 #[must_use]
 pub fn black_jpeg([width, height]: [u16; 2], progressive: bool, grey: bool) -> Vec<u8> {
     let ids: &[u8] = if grey { &[1] } else { &[1, 2, 3] };

@@ -29,8 +29,8 @@ pub fn check_refusal(output: &Output, message: &str) {
     assert!(output.stdout.is_empty(), "{message}");
 }
 
-/// Kills programs that write the files `wholes[0]` and `wholes[1]` in turns, and checks after each kill that every file is
-/// one of the two, whole, and has at most one temporary beside it; until `enough` kills have fallen into a save.
+/// Kills programs that write the files `wholes[0]` and `wholes[1]` in turns, and checks after each kill that every file
+/// is one of the two, whole, and has at most one temporary beside it; until `enough` kills have fallen into a save.
 ///
 /// How many do so is up to the machine. Where it takes too long, this says that it could not judge, and fails nobody.
 pub fn kill_savers(program: &str, wholes: &[Files; 2], arguments: &[String; 2], enough: u32) {

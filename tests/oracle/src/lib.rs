@@ -1,4 +1,5 @@
-//! What tests, benches and the report compare with: one exact reference a question, one random generator, and hard cases.
+//! What tests, benches and the report compare with: one exact reference a question, one random generator, and hard
+//! cases.
 //!
 //! It shares no code with the kernels and knows none of their types: numbers go in as doubles, and every formula is the
 //! plainest that is exact. Sums, differences and products of [`Big`] are exact; only quotients, roots and angles round.

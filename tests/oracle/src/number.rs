@@ -55,8 +55,8 @@ pub fn sign(a: &Big) -> Ordering {
     a.cmp(&Big::ZERO)
 }
 
-/// Returns the double nearest to a number, ties to even. Zero is +0.0; what underflows keeps its sign; beyond the range it
-/// is infinite.
+/// Returns the double nearest to a number, ties to even. Zero is +0.0; what underflows keeps its sign; beyond the range
+/// it is infinite.
 #[must_use]
 pub fn rounded(a: &Big) -> f64 {
     let size = a.clone().abs();
@@ -105,7 +105,8 @@ pub fn is_tie(x: f64, compare: impl Fn(&Big) -> Ordering) -> bool {
     (bits > 0 && is_at(midpoint(bits - 1))) || (x.is_finite() && is_at(midpoint(bits)))
 }
 
-/// Halfway from the double with these bits, not negative, to the next; infinity stands for 2^1024, its place in the sequence.
+/// Halfway from the double with these bits, not negative, to the next; infinity stands for 2^1024, its place in the
+/// sequence.
 fn midpoint(bits: u64) -> Big {
     let value = |bits: u64| {
         if bits == f64::INFINITY.to_bits() { power_of_two(1024) } else { exact(f64::from_bits(bits)) }

@@ -1,7 +1,7 @@
 //! Pseudo-random numbers from a fixed seed, hard ones among them.
 //!
-//! Only operations that IEEE 754 rounds correctly are used, so the numbers are the same on every platform. A *point* is a
-//! `DVec3`, a *vector* the three numbers that the report's cases are made of.
+//! Only operations that IEEE 754 rounds correctly are used, so the numbers are the same on every platform. A *point* is
+//! a `DVec3`, a *vector* the three numbers that the report's cases are made of.
 
 use std::ops::Range;
 
@@ -125,7 +125,8 @@ impl Random {
         if bits & 4 == 0 { magnitude } else { -magnitude }
     }
 
-    /// Any finite number: all exponents alike, subnormals, zeros and the ends of the range among them, some with few bits.
+    /// Any finite number: all exponents alike, subnormals, zeros and the ends of the range among them, some with few
+    /// bits.
     pub fn finite(&mut self) -> f64 {
         let bits = self.bits();
         let x = f64::from_bits(match self.below(16) {

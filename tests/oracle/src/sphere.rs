@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use crate::{Big, Quadratic, Vector, dot, exact, sign};
 
-/// Returns the equation of the parameters `t` at which a line meets a sphere: `|offset + t direction|² = radius²`, where
-/// `offset` leads from the center to the origin of the line. Its constant tells on which side the origin is.
+/// Returns the equation of the parameters `t` at which a line meets a sphere: `|offset + t direction|² = radius²`,
+/// where `offset` leads from the center to the origin of the line. Its constant tells on which side the origin is.
 #[must_use]
 pub fn sphere_equation(direction: &Vector, offset: &Vector, radius: &Big) -> Quadratic {
     Quadratic {

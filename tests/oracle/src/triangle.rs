@@ -99,8 +99,8 @@ impl Crossing {
         self.place().is_hit().then(|| self.volumes.each_ref().map(|volume| quotient(volume, &self.slope)))
     }
 
-    /// Whether the ray crosses the triangle when its direction is turned by an infinitely small amount `(ε, ε², ε³)`: then it
-    /// meets no edge.
+    /// Whether the ray crosses the triangle when its direction is turned by an infinitely small amount `(ε, ε², ε³)`:
+    /// then it meets no edge.
     #[must_use]
     pub fn crosses(&self) -> bool {
         let turned = |x: &Big, v: &Vector| {

@@ -82,8 +82,8 @@ impl Trunk {
     }
 }
 
-/// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` whether it is a twin; no arithmetic uses that
-/// lane's value.
+/// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` whether it is a twin; no arithmetic uses
+/// that lane's value.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     low: Vec4,
@@ -232,7 +232,8 @@ fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32
     }
 }
 
-/// Of equal primitives marks all as twins but the one of the lowest index, puts them last, and returns how many are left.
+/// Of equal primitives marks all as twins but the one of the lowest index, puts them last, and returns how many are
+/// left.
 #[cold]
 fn part_twins(items: &mut [Item], order: Order) -> usize {
     let compare = |a: &Item, b: &Item| order(a.index(), b.index());
@@ -377,7 +378,7 @@ fn fill_bins(items: &[Item], binning: Binning) -> Box<Bins> {
     dispatch!(Level::new(), simd => fill(simd, items, binning))
 }
 
-/// The four quarters go side by side: neighbours often share a bin, and each would wait for the one before.
+/// The four quarters go side by side: neighbours often share a bin, and an update depends on the one before.
 #[inline(always)]
 fn fill<S: Simd>(simd: S, items: &[Item], binning: Binning) -> Box<Bins> {
     let empty = f32x8::splat(simd, f32::INFINITY);
@@ -473,7 +474,8 @@ fn binned_cut(items: &mut [Item], extent: &Extent, spread: Vec4) -> usize {
     first
 }
 
-/// Puts the items for which `first` holds before the others, without a branch that cannot be predicted (N. Lomuto's way).
+/// Puts the items for which `first` holds before the others, without a branch that cannot be predicted (N. Lomuto's
+/// way).
 #[inline(always)]
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) {
     let mut border = 0;
@@ -539,8 +541,8 @@ struct Collapse<'a> {
 }
 
 impl Collapse<'_> {
-    /// The part below the branch `at`, whose first leaf block is `leaf`. The recursion is no deeper than the binary tree, so
-    /// [`MAX_DEPTH`] bounds it.
+    /// The part below the branch `at`, whose first leaf block is `leaf`. The recursion is no deeper than the binary
+    /// tree, so [`MAX_DEPTH`] bounds it.
     fn part(&mut self, at: usize, leaf: usize) -> Collapsed {
         if self.branches[at].first == 0 {
             return Collapsed { child: Child::new(self.kind, leaf), stack: 0 };
@@ -599,7 +601,8 @@ mod tests {
         }
     }
 
-    /// The least sum of surfaces of the nodes below a branch, itself included: all ways to choose at most sixteen children.
+    /// The least sum of surfaces of the nodes below a branch, itself included: all ways to choose at most sixteen
+    /// children.
     fn least(branches: &[Branch], at: usize) -> f32 {
         if branches[at].first == 0 {
             return 0.0;

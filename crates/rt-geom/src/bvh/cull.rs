@@ -1,8 +1,8 @@
 //! The cull: which of sixteen bounds can a ray still meet within its range? It may keep too much and never drops a hit.
 //!
-//! A ray enters as a [`CullRay`]: in cull coordinates, measured from the point of its line that is nearest to the scene's
-//! center. So every number here is of the order of 1, however far the ray's origin is, and each rounding error is a
-//! small multiple of 2^-24. The slack that makes up for them is derived in `docs/numerics.md`, section 9.
+//! A ray enters as a [`CullRay`]: in cull coordinates, measured from the point of its line that is nearest to the
+//! scene's center. So every number here is of the order of 1, however far the ray's origin is, and each rounding error
+//! is a small multiple of 2^-24. The slack that makes up for them is derived in `docs/numerics.md`, section 9.
 //!
 //! - Boxes: the entry and exit of three slabs (T. Kay and J. Kajiya, "Ray Tracing Complex Scenes", 1986), each slab
 //!   widened by the slack.
@@ -304,7 +304,8 @@ mod tests {
         (kept, hit)
     }
 
-    /// From near and from 2^36 radii away, with directions of any length, and ranges that end just behind the first hit.
+    /// From near and from 2^36 radii away, with directions of any length, and ranges that end just behind the first
+    /// hit.
     #[test]
     fn the_cull_drops_no_hit_and_most_of_the_rest() {
         let random = &mut Random::new(9);

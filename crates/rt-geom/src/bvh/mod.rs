@@ -1,7 +1,7 @@
 //! The fast tree: sixteen children a node, boxes above blocks of balls, culled in f32 sixteen at a time.
 //!
-//! `build.rs` makes it, `node.rs` says how it lies in memory, `walk.rs` takes one ray through it and `batch.rs` many. The
-//! cull (`cull.rs`) may keep too much and never drops a hit; the exact kernels of the primitives decide.
+//! `build.rs` makes it, `node.rs` says how it lies in memory, `walk.rs` takes one ray through it and `batch.rs` many.
+//! The cull (`cull.rs`) may keep too much and never drops a hit; the exact kernels of the primitives decide.
 
 mod batch;
 mod build;
@@ -84,8 +84,8 @@ impl Bvh {
         self.leaves.shape(index)
     }
 
-    /// The same tree with another instruction set: `"sse2"`, `"avx2"`, `"avx512"` or `"neon"`; `None` if this CPU lacks it.
-    /// For tests and benches: every set gives the same answers.
+    /// The same tree with another instruction set: `"sse2"`, `"avx2"`, `"avx512"` or `"neon"`; `None` if this CPU lacks
+    /// it. For tests and benches: every set gives the same answers.
     #[doc(hidden)]
     #[must_use]
     pub fn with_simd(mut self, name: &str) -> Option<Self> {

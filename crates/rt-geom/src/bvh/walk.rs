@@ -155,8 +155,8 @@ fn walk<S: Simd, Q: Query>(
     }
 }
 
-/// The nearest of the children that `next` gives, each with whether it is the last; the others go on the stack, farthest
-/// first.
+/// The nearest of the children that `next` gives, each with whether it is the last; the others go on the stack,
+/// farthest first.
 #[inline(always)]
 fn nearest(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], height: &mut usize) -> Pending {
     let (a, last) = next();
@@ -199,8 +199,8 @@ fn nearest(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], hei
 }
 
 /// Hides from the compiler that the ray is the same in every step. It would else spread the ray's thirty numbers over
-/// vectors before the loop, and spill them: 3 to 11 % slower for single rays (`closest`, uniform, packed and nested spheres, 64
-/// to 1e5, AVX2 on a Zen 3).
+/// vectors before the loop, and spill them: 3 to 11 % slower for single rays (`closest`, uniform, packed and nested
+/// spheres, 64 to 1e5, AVX2 on a Zen 3).
 #[inline(always)]
 fn opaque(ray: &CullRay) -> &CullRay {
     std::hint::black_box(ray)

@@ -137,8 +137,8 @@ pub(super) fn certify<S: Simd>(simd: S, tangent: &Tangent<f64>, all: &[Sphere]) 
 /// Beyond so many radii from the origin the rounding of the center moves it too far for the lower bound to be sharp.
 const FAR: f64 = power_of_two(20);
 
-/// [`certify`] for spheres so far from the origin that doubles lie far apart there: the lower bound is found on a copy near
-/// the origin, and of the doubles around the center the best is taken.
+/// [`certify`] for spheres so far from the origin that doubles lie far apart there: the lower bound is found on a copy
+/// near the origin, and of the doubles around the center the best is taken.
 #[cold]
 #[inline(never)]
 fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]) -> (Bracket, f64) {
@@ -160,7 +160,8 @@ fn certify_apart<S: Simd>(simd: S, tangent: &Tangent<f64>, spheres: [&Sphere; 4]
     (around, bound.max(spheres[0].radius()))
 }
 
-/// Brackets the radius around the doubles nearest to the center of `tangent`, whose spheres are given, the largest first.
+/// Brackets the radius around the doubles nearest to the center of `tangent`, whose spheres are given, the largest
+/// first.
 ///
 /// Returns the bracket, a lower bound, and whether the nearest doubles are clear.
 #[inline(always)]
@@ -249,8 +250,8 @@ impl<S: Simd> NewtonStep<S> {
     }
 }
 
-/// The lower bound, from weights that nearly balance the directions from the touching points to the center; `most` is the
-/// radius around it.
+/// The lower bound, from weights that nearly balance the directions from the touching points to the center; `most` is
+/// the radius around it.
 #[inline(always)]
 fn lower_bound<S: Simd>(simd: S, tangent: &Tangent<f64>, reach: &Reach<S>, step: &NewtonStep<S>, most: f64) -> f64 {
     let base = reach.high[0];

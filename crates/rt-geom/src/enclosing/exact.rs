@@ -1,4 +1,5 @@
-//! Exact answers about one sphere in another: in fixed-point numbers, where one window holds all, else in integers of any size.
+//! Exact answers about one sphere in another: in fixed-point numbers, where one window holds all, else in integers of
+//! any size.
 
 use glam::DVec3;
 use rt_math::exact::vector::{FromDifference, difference, dot, minus};
@@ -16,7 +17,8 @@ fn square_of_distance(a: DVec3, b: DVec3) -> ReachInteger {
     dot(&offset, &offset)
 }
 
-/// Whether a sphere with radius `outer` contains one with radius `inner`, given the square of the distance of the centers.
+/// Whether a sphere with radius `outer` contains one with radius `inner`, given the square of the distance of the
+/// centers.
 fn holds(outer: f64, inner: f64, square: &ReachInteger) -> bool {
     decided(Stage::Question);
     let room = ReachInteger::from_difference(outer, inner);

@@ -27,8 +27,8 @@ use pivot::{LANES, SphereLanes, pivot};
 use stage::{Stage, decided};
 use tangent::{ORDINARY_SQUARES, Tangent};
 
-/// Counts, in tests only, which stage decided, and how often exact integers were asked: so that tests can show that every one
-/// is reached, and that none goes on for long.
+/// Counts, in tests only, which stage decided, and how often exact integers were asked: so that tests can show that
+/// every one is reached, and that none goes on for long.
 mod stage {
     rt_math::count_stages! {
         /// What decides a radius.

@@ -1,8 +1,8 @@
 //! The minimal spheres of all nodes of a tree, each over all leaves below it, from the bottom up.
 //!
 //! The minimal sphere of the children's supports is a lower bound for the node's and nearly always is it. A query for
-//! the farthest leaf verifies it: a subtree whose own sphere lies inside is skipped whole. A leaf that sticks out
-//! joins the support, and the query is repeated. Where queries would visit much of the subtree, as when all leaves touch one
+//! the farthest leaf verifies it: a subtree whose own sphere lies inside is skipped whole. A leaf that sticks out joins
+//! the support, and the query is repeated. Where queries would visit much of the subtree, as when all leaves touch one
 //! sphere, the leaves are solved as a set of their own.
 
 use std::ops::Range;
@@ -183,8 +183,8 @@ impl Subtrees<'_> {
         node.children.start - self.first..node.children.end - self.first
     }
 
-    /// From the minimal sphere of some leaves to that of all below the node; `None` if it is out of the ordinary or takes
-    /// too many visits.
+    /// From the minimal sphere of some leaves to that of all below the node; `None` if it is out of the ordinary or
+    /// takes too many visits.
     fn climb<S: Simd, const VECTORS: usize>(
         &self,
         simd: S,
@@ -224,8 +224,8 @@ impl Subtrees<'_> {
         None
     }
 
-    /// The center, rounded, and the largest reach of the support from it, if the support is balanced: then the sphere is
-    /// minimal up to a few units in the last place.
+    /// The center, rounded, and the largest reach of the support from it, if the support is balanced: then the sphere
+    /// is minimal up to a few units in the last place.
     #[inline(always)]
     fn sound(&self, tangent: &Tangent<f64>) -> Option<(DVec3, f64)> {
         let (center, radius) = tangent.sphere(self.leaves, DVec3::ZERO);
@@ -250,8 +250,9 @@ impl Subtrees<'_> {
         (tangent.support().len() == 1 || balanced).then_some((center, most))
     }
 
-    /// The leaf below `node` that reaches farthest from `center`, if one reaches farther than `radius`, and how far; else
-    /// any leaf, and `radius`. `None` if that takes more than the given visits of nodes, of which those made are taken off.
+    /// The leaf below `node` that reaches farthest from `center`, if one reaches farther than `radius`, and how far;
+    /// else any leaf, and `radius`. `None` if that takes more than the given visits of nodes, of which those made are
+    /// taken off.
     fn farthest<S: Simd>(
         &self,
         simd: S,
@@ -340,8 +341,8 @@ const LEAVES_A_VISIT: usize = 64;
 /// No node known needs more than a few rounds.
 const MAX_ROUNDS: usize = 32;
 
-/// The minimal sphere of two, up to a few units in the last place; `None` if one lies inside the other or nearly, or far out
-/// of the ordinary range.
+/// The minimal sphere of two, up to a few units in the last place; `None` if one lies inside the other or nearly, or
+/// far out of the ordinary range.
 #[inline(always)]
 fn pair(a: &Sphere, b: &Sphere) -> Option<Sphere> {
     let p = b.center() - a.center();

@@ -71,8 +71,8 @@ impl<S: Simd, const VECTORS: usize> SphereLanes<S, VECTORS> {
         Self { vectors, used, count }
     }
 
-    /// A sphere that reaches far from the mean of the centers, and the largest `d² + r²` there, up to the six lowest bits:
-    /// the square of the largest reach is between this and twice as much.
+    /// A sphere that reaches far from the mean of the centers, and the largest `d² + r²` there, up to the six lowest
+    /// bits: the square of the largest reach is between this and twice as much.
     #[inline(always)]
     pub(super) fn farthest_from_mean(&self, simd: S) -> (usize, f64) {
         let mut sum = [f64x8::splat(simd, 0.0); 3];
@@ -97,8 +97,8 @@ impl<S: Simd, const VECTORS: usize> SphereLanes<S, VECTORS> {
     /// Returns the sphere that sticks out farthest of the one around `center`, and a measure of how far: positive if
     /// it sticks out.
     ///
-    /// The six lowest bits of the [`measure`] carry the index, so that one maximum finds both. (An unused lane stands for
-    /// the first sphere.)
+    /// The six lowest bits of the [`measure`] carry the index, so that one maximum finds both. (An unused lane stands
+    /// for the first sphere.)
     #[inline(always)]
     pub(super) fn farthest(&self, simd: S, center: [f64; 3], radius: f64) -> (usize, f64) {
         let mut most = f64x8::splat(simd, f64::NEG_INFINITY);

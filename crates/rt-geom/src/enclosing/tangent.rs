@@ -2,10 +2,10 @@
 //!
 //! A sphere of radius R touches sphere i from inside if `|x - c_i| = R - r_i`. With the origin at the center of the
 //! largest sphere, `p_i = c_i - c_0`, `s_i = r_i - r_0 <= 0` and `rho = R - r_0`, the difference of the squares of the
-//! equations i and 0 is linear, `p_i . x = h_i + s_i rho` with `h_i = (|p_i|² - s_i²) / 2`. The center lies in
-//! the plane, line or point that the centers span, so the dual basis `k_i` of the `p_i` gives
-//! `x = sum k_i (h_i + s_i rho) = a + rho q`, and `|x| = rho` is a quadratic equation for `rho`. The same `k_i` give the
-//! barycentric coordinates of x; the sphere is the minimal one of its spheres if none of them is negative.
+//! equations i and 0 is linear, `p_i . x = h_i + s_i rho` with `h_i = (|p_i|² - s_i²) / 2`. The center lies in the
+//! plane, line or point that the centers span, so the dual basis `k_i` of the `p_i` gives
+//! `x = sum k_i (h_i + s_i rho) = a + rho q`, and `|x| = rho` is a quadratic equation for `rho`. The same `k_i` give
+//! the barycentric coordinates of x; the sphere is the minimal one of its spheres if none of them is negative.
 
 use std::ops::{Add, Div, Mul, Neg, Range, Sub};
 
@@ -183,8 +183,8 @@ impl<T: SolverNumber> Tangent<T> {
         out
     }
 
-    /// Solves for the center and the radius. False if no sphere was found that all touch from inside: if that is for the
-    /// want of a root, nothing has changed. Coordinates of the center may be negative.
+    /// Solves for the center and the radius. False if no sphere was found that all touch from inside: if that is for
+    /// the want of a root, nothing has changed. Coordinates of the center may be negative.
     #[inline(always)]
     fn solve(&mut self, spheres: &[Sphere]) -> bool {
         let base = &spheres[self.index[0]];
@@ -280,8 +280,9 @@ impl<T: SolverNumber> Tangent<T> {
         dot(&from, &from).sqrt() + (T::from(sphere.radius()) - radius)
     }
 
-    /// The place in `old`, the spheres that were solved last, of the one that leaves first for one more: weight moves to that one and off the others in proportion
-    /// to its barycentric coordinates among them, and that of one runs out first.
+    /// The place in `old`, the spheres that were solved last, of the one that leaves first for one more: weight moves
+    /// to that one and off the others in proportion to its barycentric coordinates among them, and that of one runs out
+    /// first.
     #[inline(always)]
     fn leaves(&self, old: [usize; 4], index: usize, spheres: &[Sphere]) -> usize {
         let p = difference::<T>(spheres[index].center(), spheres[old[0]].center());

@@ -1,5 +1,5 @@
-//! The stages after the filter and the Newton step: fixed-point numbers of one limb, double-double, fixed-point numbers of
-//! two limbs, integers of any size; in the order of their cost.
+//! The stages after the filter and the Newton step: fixed-point numbers of one limb, double-double, fixed-point numbers
+//! of two limbs, integers of any size; in the order of their cost.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -93,8 +93,9 @@ pub(super) fn side(sphere: &Sphere, point: DVec3) -> Side {
     }
 }
 
-/// The quadratic equation of a line and a sphere in fixed-point numbers, where center, radius and origin lie in one window
-/// and the direction in another: `a T² + 2 b T + c = 0` with `a`, `b`, `c` of `S = 2 N` limbs, and `Delta` of `Q = 4 N`.
+/// The quadratic equation of a line and a sphere in fixed-point numbers, where center, radius and origin lie in one
+/// window and the direction in another: `a T² + 2 b T + c = 0` with `a`, `b`, `c` of `S = 2 N` limbs, and `Delta` of
+/// `Q = 4 N`.
 struct Equation<const N: usize, const S: usize, const Q: usize> {
     a: Fixed<S>,
     b: Fixed<S>,
@@ -145,7 +146,8 @@ impl<const N: usize, const S: usize, const Q: usize> Solve for Equation<N, S, Q>
         match self.delta.sign() {
             Ordering::Less => None,
             Ordering::Equal => inside(self.tangent()),
-            // Two different roots with the product c / a and the sum -2 b / a. A range from +0.0 on holds no negative one.
+            // Two different roots with the product c / a and the sum -2 b / a. A range from +0.0 on holds no negative
+            // one.
             Ordering::Greater if within.start.to_bits() == 0 => match (self.c.sign(), self.b.sign()) {
                 (Ordering::Greater, Ordering::Greater) => None,
                 (Ordering::Less, _) => inside(self.far()),
@@ -226,8 +228,8 @@ fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
 }
 
 /// Limbs for the roots. Coordinates relative to the center are multiples of 2^-1074 below 2^1025. `Delta`, of degree
-/// four, is a multiple of 2^-4296 below 2^4103: 134 limbs. To round a root takes `(2 (t + 2) - 2 b) / 64 + 2` limbs with
-/// `t = 3077` and `b = -3222`, that of twice a double times `d . d`.
+/// four, is a multiple of 2^-4296 below 2^4103: 134 limbs. To round a root takes `(2 (t + 2) - 2 b) / 64 + 2` limbs
+/// with `t = 3077` and `b = -3222`, that of twice a double times `d . d`.
 type RootInteger = Dyadic<200>;
 
 #[cold]

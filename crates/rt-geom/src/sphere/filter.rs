@@ -1,4 +1,5 @@
-//! The filter of lines and spheres, and what follows it: last bits where it is certain, exact arithmetic where it is not.
+//! The filter of lines and spheres, and what follows it: last bits where it is certain, exact arithmetic where it is
+//! not.
 
 use std::ops::Range;
 
@@ -12,8 +13,8 @@ use crate::Ray;
 use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds};
 use crate::simd::dispatch;
 
-/// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there, and what
-/// underflows is far below the bounds.
+/// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there,
+/// and what underflows is far below the bounds.
 const SMALLEST: f64 = power_of_two(-250);
 const LARGEST: f64 = power_of_two(600);
 
@@ -137,7 +138,8 @@ impl Sphere {
         }
     }
 
-    /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of the root.
+    /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of
+    /// the root.
     #[inline(never)]
     fn offer_far(&self, near: f64, far: f64, error: f64, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
         let t = if near + error < prepared.start { far } else { near };

@@ -7,8 +7,8 @@
 //!     t* - t = f(t) / (2 sqrt(Delta) + a (t* - t))        for the near root, and for the far one with both signs turned
 //! ```
 //!
-//! of which the filter knows `sqrt(Delta)`, and that `t* - t` is small. A rounding test tells whether `t` and this step decide the
-//! last bit. `docs/numerics.md`, section 5, proves the bounds.
+//! of which the filter knows `sqrt(Delta)`, and that `t* - t` is small. A rounding test tells whether `t` and this step
+//! decide the last bit. `docs/numerics.md`, section 5, proves the bounds.
 
 use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
 use rt_math::exact::{U, round_if_certain, two_diff, two_sum};
@@ -111,8 +111,8 @@ pub(super) fn rounded<const FMA: bool, S: Simd>(
     round_if_certain(t, step, error)
 }
 
-/// Returns a root as the filter's `t`, one step, and a bound of the error of their sum as the rounding test wants it; `None`
-/// if the filter knows too little of `sqrt(Delta)`.
+/// Returns a root as the filter's `t`, one step, and a bound of the error of their sum as the rounding test wants it;
+/// `None` if the filter knows too little of `sqrt(Delta)`.
 #[inline(always)]
 fn refined<const FMA: bool, S: Simd>(
     simd: S,
@@ -213,8 +213,8 @@ mod tests {
             assert!(bounds.low < bounds.high);
         }
     }
-    /// From on the surface to 2^10 radii away, and from the middle to within 2^-30 of grazing: both bounds are met, and nearly
-    /// enough that neither could be 2^7 times smaller.
+    /// From on the surface to 2^10 radii away, and from the middle to within 2^-30 of grazing: both bounds are met, and
+    /// nearly enough that neither could be 2^7 times smaller.
     #[test]
     fn the_residual_and_one_step_keep_their_bounds() {
         let rng = &mut Random::new(5);

@@ -8,8 +8,8 @@
 //!     Delta = (d.d) r² - |w x d|²        (d.d times: radius² minus the squared distance of the line from the center)
 //! ```
 //!
-//! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every
-//! case in `filter.rs`; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
+//! which loses nothing when the sphere is small and far. Plain doubles with an error bound decide nearly every case in
+//! `filter.rs`; `exact.rs` decides the rest. The roots `(-(w.d) -+ sqrt(Delta)) / d.d` get their last bits, the ones
 //! that cancel as well, from a Newton step on the residual `|w + t d|² - r²` in `finish.rs`.
 
 mod exact;
@@ -75,7 +75,8 @@ impl Sphere {
     /// infinite end is no bound, and a root beyond the largest double is then a hit at infinity. A range that is
     /// empty or has a NaN holds nothing. From inside the sphere the far side is hit.
     ///
-    /// Exact for every finite ray and sphere, over- and underflow included; `docs/numerics.md`, section 5, has the proof.
+    /// Exact for every finite ray and sphere, over- and underflow included; `docs/numerics.md`, section 5, has the
+    /// proof.
     ///
     /// ```
     /// use glam::DVec3;
@@ -136,8 +137,8 @@ impl Sphere {
 
     /// Returns the outward unit normal at a point of the surface: `(point - center) / |point - center|`.
     ///
-    /// Within `4.6 * 2^-53` of the exact unit vector through the point given, in Euclidean length, for any scale (proved);
-    /// a point that is off the surface by `e` turns it by `e / radius` more. At the center itself, so for
+    /// Within `4.6 * 2^-53` of the exact unit vector through the point given, in Euclidean length, for any scale
+    /// (proved); a point that is off the surface by `e` turns it by `e / radius` more. At the center itself, so for
     /// radius 0, there is no normal: the answer is NaN.
     #[must_use]
     pub fn normal(&self, point: DVec3) -> DVec3 {

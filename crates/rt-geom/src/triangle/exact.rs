@@ -60,7 +60,8 @@ pub(super) fn closest_with_weights(triangle: &Triangle, ray: &Ray, within: Range
 pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
     ask(triangle, ray, |volumes| {
         let (height, [_, _, _, slope]) = (volumes.height_sign(), volumes.signs());
-        // Height zero: the origin is in the plane, or there is no plane. Slope zero: two of the volumes have opposite signs.
+        // Height zero: the origin is in the plane, or there is no plane. Slope zero: two of the volumes have opposite
+        // signs.
         height != Ordering::Equal && height == slope && volumes.turned_signs() == [slope; 3]
     })
 }
@@ -134,8 +135,8 @@ fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> 
     Some([certain(u, error)?, certain(v, error)?, certain(w, error)?, sum])
 }
 
-/// The volumes in fixed-point numbers, where all points lie in one window and the direction in another: coordinates of `N`
-/// limbs, areas of `A = 2 N`, volumes of `V = 3 N`.
+/// The volumes in fixed-point numbers, where all points lie in one window and the direction in another: coordinates of
+/// `N` limbs, areas of `A = 2 N`, volumes of `V = 3 N`.
 struct FixedVolumes<const N: usize, const A: usize, const V: usize> {
     /// The first vertex relative to the origin of the ray.
     vertex: [Fixed<N>; 3],
@@ -197,8 +198,8 @@ impl<const N: usize, const A: usize, const V: usize> Volumes for FixedVolumes<N,
     }
 }
 
-/// The volumes of numbers that no window holds: signs in double-double where that is certain, all else in integers of any
-/// size.
+/// The volumes of numbers that no window holds: signs in double-double where that is certain, all else in integers of
+/// any size.
 struct WideVolumes<'a> {
     triangle: &'a Triangle,
     ray: &'a Ray,

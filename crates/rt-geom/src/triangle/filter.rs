@@ -1,4 +1,5 @@
-//! The filter of lines and triangles, and what follows it: last bits where it is certain, exact arithmetic where it is not.
+//! The filter of lines and triangles, and what follows it: last bits where it is certain, exact arithmetic where it is
+//! not.
 
 use std::ops::Range;
 
@@ -10,8 +11,8 @@ use super::{FARTHEST, Triangle, exact};
 use crate::Ray;
 use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds, larger, smaller};
 
-/// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to `E² (E + S)`,
-/// as `docs/numerics.md`, section 6, has them.
+/// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to
+/// `E² (E + S)`, as `docs/numerics.md`, section 6, has them.
 const ERROR: f64 = 18.0 * U;
 
 /// The filter: decides in plain doubles whether the line meets the interior or passes beside the triangle, where that

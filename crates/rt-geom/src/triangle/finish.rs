@@ -1,15 +1,15 @@
 //! The correctly rounded `t` and weights of a hit that the filter has found: one step of iterative refinement.
 //!
-//! A hit solves the linear system `o + t d = α a + β b + γ c`, `α + β + γ = 1`. The filter's solution in doubles is put back
-//! in; what is left over, computed to twice the precision, is a vector `r` some units in the last place long. It is
-//! solved for by the same formulas, in plain doubles, since of a correction a few bits are enough:
+//! A hit solves the linear system `o + t d = α a + β b + γ c`, `α + β + γ = 1`. The filter's solution in doubles is put
+//! back in; what is left over, computed to twice the precision, is a vector `r` some units in the last place long. It
+//! is solved for by the same formulas, in plain doubles, since of a correction a few bits are enough:
 //!
 //! ```text
 //!     β' = r . (d x f) / sum      γ' = d . (r x e) / sum      t' = f . (r x e) / sum
 //! ```
 //!
-//! A rounding test then tells whether solution and correction decide the last bit. `docs/numerics.md`, section 6, proves
-//! the bounds.
+//! A rounding test then tells whether solution and correction decide the last bit. `docs/numerics.md`, section 6,
+//! proves the bounds.
 
 use glam::DVec3;
 use rt_math::exact::{U, round_if_certain, two_prod, two_sum};
@@ -18,12 +18,13 @@ use super::Triangle;
 use crate::Ray;
 use crate::ray::{cross, dot, max_abs};
 
-/// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to `r`.
+/// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to
+/// `r`.
 const REST_ERROR: f64 = 136.0 * U * U;
 const SOLUTION_ERROR: f64 = 21.0 * U;
 
-/// Möller and Trumbore's quantities for a line that surely meets the interior, all but `e`, `f`, `p` with the sign that makes the
-/// sum of the volumes positive.
+/// Möller and Trumbore's quantities for a line that surely meets the interior, all but `e`, `f`, `p` with the sign that
+/// makes the sum of the volumes positive.
 pub(super) struct TriangleCrossing {
     /// The edges from the first vertex to the others.
     pub(super) e: DVec3,
@@ -274,8 +275,8 @@ mod tests {
         }
         assert!(hits > 1500 && first < hits / 2 && second > hits / 3, "{hits} {first} {second}");
     }
-    /// `r`, the solutions for it, and what they leave of `t` and the weights: near the origin and far from it, down to rays that
-    /// nearly lie in the plane. Neither constant could be 2^7 times smaller, nor the bounds of a candidate.
+    /// `r`, the solutions for it, and what they leave of `t` and the weights: near the origin and far from it, down to
+    /// rays that nearly lie in the plane. Neither constant could be 2^7 times smaller, nor the bounds of a candidate.
     #[test]
     fn the_rest_and_the_steps_keep_their_bounds() {
         let rng = &mut Random::new(6);
@@ -304,7 +305,8 @@ mod tests {
                 assert!(below(rest - exact(refined.rest[i]), bound), "rest: {}", context());
             }
 
-            // Solving for the rest as computed: t' = -r . (e x f) / sum, β' = r . (d x f) / -sum, γ' = r . (e x d) / -sum.
+            // Solving for the rest as computed: t' = -r . (e x f) / sum, β' = r . (d x f) / -sum, γ' = r . (e x d) /
+            // -sum.
             let origin = vector(ray.origin());
             let truth = oracle::Crossing::new(&d, [a, b, c].map(|vertex| sub(&vector(vertex), &origin)));
             let TriangleCrossing { edge, sum, .. } = crossing;

@@ -161,12 +161,12 @@ fn exact_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
     }
 }
 
-/// The turns and `n . n` in fixed-point numbers, where all points lie in one window: coordinates of `N` limbs, dot products of
-/// `S = 2 N`, turns of `Q = 4 N`.
+/// The turns and `n . n` in fixed-point numbers, where all points lie in one window: coordinates of `N` limbs, dot
+/// products of `S = 2 N`, turns of `Q = 4 N`.
 ///
-/// With the edges `e = b - a` and `f = c - a` and `q = point - a`, Lagrange's identity gives the turns as minors of the dot
-/// products: `(f.f) (e.q) - (e.f) (f.q)` for the vertex `b`, `(e.e) (f.q) - (e.f) (e.q)` for `c`, and `(e.e) (f.f) - (e.f)²` for
-/// their sum.
+/// With the edges `e = b - a` and `f = c - a` and `q = point - a`, Lagrange's identity gives the turns as minors of the
+/// dot products: `(f.f) (e.q) - (e.f) (f.q)` for the vertex `b`, `(e.e) (f.q) - (e.f) (e.q)` for `c`, and
+/// `(e.e) (f.f) - (e.f)²` for their sum.
 struct FixedTurns<const Q: usize> {
     turns: [Fixed<Q>; 3],
     sum: Fixed<Q>,

@@ -8,12 +8,12 @@
 //!
 //! tell on which side of each edge the line passes. It meets the closed triangle where no two of them have opposite
 //! signs and their sum, `d . (b - a) x (c - a)`, is not zero. Each sign depends on the two vertices of an edge and the
-//! ray alone, and swapping the vertices swaps it: with exact signs, two triangles that share an edge agree about it, and a
-//! closed mesh has no gap.
+//! ray alone, and swapping the vertices swaps it: with exact signs, two triangles that share an edge agree about it,
+//! and a closed mesh has no gap.
 //!
-//! Möller and Trumbore's formulas give the same volumes (negative, and two of them as differences from the sum). In plain
-//! doubles with an error bound they decide nearly every case in `filter.rs`, and `exact.rs` decides the rest. The last bits of `t`
-//! and of the weights come from one step of iterative refinement, in `finish.rs`.
+//! Möller and Trumbore's formulas give the same volumes (negative, and two of them as differences from the sum). In
+//! plain doubles with an error bound they decide nearly every case in `filter.rs`, and `exact.rs` decides the rest. The
+//! last bits of `t` and of the weights come from one step of iterative refinement, in `finish.rs`.
 
 mod exact;
 mod filter;
@@ -30,8 +30,8 @@ use crate::ray::{FilterVerdict, PreparedRay, larger, max_abs};
 use filter::{filter, surely_leans};
 pub use locate::{Inside, inside_triangle};
 
-/// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's origin
-/// is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
+/// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's
+/// origin is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
 const SHORTEST: f64 = power_of_two(-150);
 const FARTHEST: f64 = power_of_two(300);
 
@@ -64,8 +64,8 @@ impl Verdict {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     vertices: [DVec3; 3],
-    /// `E`: the sum over the axes of the larger component of the edges from the first vertex. Infinite, so that no filter is
-    /// certain, if that is too small for the filters' bounds.
+    /// `E`: the sum over the axes of the larger component of the edges from the first vertex. Infinite, so that no
+    /// filter is certain, if that is too small for the filters' bounds.
     edge: f64,
 }
 

@@ -129,8 +129,8 @@ fn chunks(
     Ok((samples, transparent))
 }
 
-/// Sets the samples from index `at` on to those of the first `count` pixels of a row, given by plane; returns whether one
-/// of the pixels is not opaque.
+/// Sets the samples from index `at` on to those of the first `count` pixels of a row, given by plane; returns whether
+/// one of the pixels is not opaque.
 fn put(samples: &mut Samples, at: usize, layout: &SampleLayout, row: &[Vec<u16>], count: usize) -> bool {
     let full = u16::try_from((1_u32 << layout.bits) - 1).unwrap_or(u16::MAX);
     // Full intensity of so few bits divides that of 8.

@@ -19,8 +19,8 @@ pub fn has_fma() -> bool {
 /// on its hot path, so that it is compiled anew inside each caller. Cold parts are ordinary `#[cold] #[inline(never)]`
 /// functions, which exist once. `kernel` must give the same result for either value.
 ///
-/// - FMA compiled in (`-C target-feature=+fma`), or 64-bit ARM: `kernel::<true>`. It is not inlined either: arguments in
-///   registers cannot stall on a vector load of what was just stored as scalars.
+/// - FMA compiled in (`-C target-feature=+fma`), or 64-bit ARM: `kernel::<true>`. It is not inlined either: arguments
+///   in registers cannot stall on a vector load of what was just stored as scalars.
 /// - x86 otherwise: a call that cannot be inlined of `kernel::<true>`, compiled for FMA, or `kernel::<false>`. The
 ///   choice costs one relaxed load and a predictable branch, the call one to two nanoseconds: put the dispatch around
 ///   a whole kernel, not around its parts, and a cheap filter that decides most cases before it.

@@ -34,11 +34,11 @@ pub fn dot_sign(a: DVec3, b: DVec3) -> Option<Ordering> {
     filter_sign(dot_with_error(a, b)).or_else(|| integer_sign(a, DVec3::ZERO, b))
 }
 
-/// Returns the sign of `(a - b) . n`, exact for all finite vectors, also where the difference rounds or overflows; `None`
-/// if a component is infinite or NaN.
+/// Returns the sign of `(a - b) . n`, exact for all finite vectors, also where the difference rounds or overflows;
+/// `None` if a component is infinite or NaN.
 ///
-/// It tells on which side of the plane through `b` with the normal `n` the point `a` lies: `Greater` on the side to which
-/// the normal points, `Equal` in the plane (everywhere, if the normal is zero).
+/// It tells on which side of the plane through `b` with the normal `n` the point `a` lies: `Greater` on the side to
+/// which the normal points, `Equal` in the plane (everywhere, if the normal is zero).
 ///
 /// ```
 /// use core::cmp::Ordering;
@@ -57,8 +57,8 @@ pub fn difference_dot_sign(a: DVec3, b: DVec3, n: DVec3) -> Option<Ordering> {
     filter_sign(sum_with_error((a - b) * n, DIFFERENCE_ERROR)).or_else(|| integer_sign(a, b, n))
 }
 
-/// Returns the rounded `a . b` and a bound of its error; where something overflows the bound is no smaller than the value,
-/// or NaN.
+/// Returns the rounded `a . b` and a bound of its error; where something overflows the bound is no smaller than the
+/// value, or NaN.
 ///
 /// `docs/numerics.md`, section 1, has the proof.
 #[inline(always)]
@@ -174,7 +174,8 @@ mod tests {
         assert!(integers > 1_000, "{integers}");
     }
 
-    /// Checks a class of `(a - b) . n` against exact rational arithmetic; returns how often filter and integers decided.
+    /// Checks a class of `(a - b) . n` against exact rational arithmetic; returns how often filter and integers
+    /// decided.
     fn check_differences(seed: u64, mut vectors: impl FnMut(&mut Random) -> [[f64; 3]; 3]) -> [usize; 2] {
         let mut rng = Random::new(seed);
         let mut total = [0; 2];

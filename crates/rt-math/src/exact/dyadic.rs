@@ -6,9 +6,9 @@
 //! operation shifts bits, and trailing zero limbs are dropped. In the usual case (doubles of like magnitude) a
 //! number has a handful of limbs, whatever the capacity.
 //!
-//! Quotients and square roots are not dyadic, but their correctly rounded double is found exactly: the leading 64 bits of
-//! the operands enclose the result so tightly that at most one midpoint between two doubles lies in the enclosure, and
-//! one exact comparison with that midpoint decides. There is no loop, and an exact tie is seen as equality.
+//! Quotients and square roots are not dyadic, but their correctly rounded double is found exactly: the leading 64 bits
+//! of the operands enclose the result so tightly that at most one midpoint between two doubles lies in the enclosure,
+//! and one exact comparison with that midpoint decides. There is no loop, and an exact tie is seen as equality.
 
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -24,12 +24,12 @@ use super::enclosure::{Interval, Leading, enclose, high, low, round};
 ///
 /// - a double takes 2;
 /// - a product of two numbers takes at most the sum of their limbs;
-/// - a sum takes its span: with all terms bounded by 2ᵗ in magnitude and multiples of 2ᵇ, a sum of up to `k` terms takes
-///   at most `(t + log2 k - b) / 64 + 2`.
+/// - a sum takes its span: with all terms bounded by 2ᵗ in magnitude and multiples of 2ᵇ, a sum of up to `k` terms
+///   takes at most `(t + log2 k - b) / 64 + 2`.
 ///
-/// Each kernel derives its `LIMBS` from the exponents of its inputs by this rule, for any doubles, which makes an overflow
-/// impossible; a finite double is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴. The
-/// methods that round state what they need besides.
+/// Each kernel derives its `LIMBS` from the exponents of its inputs by this rule, for any doubles, which makes an
+/// overflow impossible; a finite double is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴. The methods that round state what they
+/// need besides.
 ///
 /// # Panics
 /// An operation whose result does not fit panics. The rule above excludes it.
@@ -47,8 +47,8 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     /// Zero.
     pub const ZERO: Self = Self { negative: false, base: 0, len: 0, limbs: [0; LIMBS] };
 
-    /// The exact value of a finite double; infinity is read as 2¹⁰²⁴ (its place in the sequence of doubles), and NaN has
-    /// no meaning. `LIMBS` must be at least 2.
+    /// The exact value of a finite double; infinity is read as 2¹⁰²⁴ (its place in the sequence of doubles), and NaN
+    /// has no meaning. `LIMBS` must be at least 2.
     #[must_use]
     pub fn from_f64(x: f64) -> Self {
         const { assert!(LIMBS >= 2) };
@@ -145,9 +145,9 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     /// [`to_f64`].
     ///
     /// The radicand must not be negative and `q` not zero (the answer is NaN then). Let all of `p`, `√r` and `2 m q` be
-    /// below 2ᵗ in magnitude and multiples of 2ᵇ (for `√r`: `r` a multiple of 2²ᵇ), for every double or midpoint `m` next to the
-    /// result; then `LIMBS >= (2 (t + 2) - 2 b) / 64 + 2` is enough. If `p` and the root cancel, `q (p ∓ √r)` must not
-    /// be zero unless the result is, which holds by itself.
+    /// below 2ᵗ in magnitude and multiples of 2ᵇ (for `√r`: `r` a multiple of 2²ᵇ), for every double or midpoint `m`
+    /// next to the result; then `LIMBS >= (2 (t + 2) - 2 b) / 64 + 2` is enough. If `p` and the root cancel,
+    /// `q (p ∓ √r)` must not be zero unless the result is, which holds by itself.
     ///
     /// [`to_f64`]: Self::to_f64
     #[must_use]

@@ -1,7 +1,8 @@
 //! From the leading bits of long integers to the two doubles between which a quotient or a root lies.
 //!
 //! The leading 64 bits of the operands enclose the result so tightly that both ends round to the same double, or to
-//! neighbours; then one exact comparison with the midpoint decides, which is the caller's. `docs/numerics.md`, section 1.
+//! neighbours; then one exact comparison with the midpoint decides, which is the caller's. `docs/numerics.md`, section
+//! 1.
 
 /// The leading 64 bits of a magnitude: it is `(bits + rest) 2^exponent` with `0 <= rest < 1`.
 #[derive(Clone, Copy)]

@@ -1,13 +1,14 @@
-//! Exact integers of fixed size for doubles whose exponents lie in a window: the rung between double-double and [`Dyadic`].
+//! Exact integers of fixed size for doubles whose exponents lie in a window: the rung between double-double and
+//! [`Dyadic`].
 //!
-//! Numbers that people have (decimals, grid coordinates, what a program computed at one scale) are multiples of one power of
-//! two and not much larger than it. A [`Window`] finds that power and turns each double into a [`Fixed`] number, an integer
-//! in two's complement of a size that the compiler knows: no loop whose length depends on values, no memory but
-//! registers, no error bound to prove. Each product takes the sum of its factors' limbs; a polynomial of degree `k` in
-//! numbers of one limb takes `k` limbs, its terms' sum included, if the window leaves a few bits.
+//! Numbers that people have (decimals, grid coordinates, what a program computed at one scale) are multiples of one
+//! power of two and not much larger than it. A [`Window`] finds that power and turns each double into a [`Fixed`]
+//! number, an integer in two's complement of a size that the compiler knows: no loop whose length depends on values, no
+//! memory but registers, no error bound to prove. Each product takes the sum of its factors' limbs; a polynomial of
+//! degree `k` in numbers of one limb takes `k` limbs, its terms' sum included, if the window leaves a few bits.
 //!
-//! Quotients and roots are correctly rounded in double-double, from the leading 106 bits, and by [`Dyadic`] where these do not
-//! decide: next to a midpoint of two doubles, or at the ends of the range.
+//! Quotients and roots are correctly rounded in double-double, from the leading 106 bits, and by [`Dyadic`] where these
+//! do not decide: next to a midpoint of two doubles, or at the ends of the range.
 
 use core::cmp::Ordering;
 use core::ops::{Add, Neg, Sub};
@@ -103,7 +104,8 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
 
     /// The correctly rounded quotient `numerator / denominator · 2^exponent`; NaN if the denominator is zero.
     ///
-    /// Ties go to even, subnormals and overflow to infinity included. Zero gives +0.0, and what underflows keeps its sign.
+    /// Ties go to even, subnormals and overflow to infinity included. Zero gives +0.0, and what underflows keeps its
+    /// sign.
     ///
     /// At most [`MOST_LIMBS`] limbs each.
     #[inline]
@@ -128,8 +130,9 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         Long::quotient(&numerator.long(exponent), &denominator.long(0))
     }
 
-    /// Returns the correctly rounded root `(p + √r) / q · 2^exponent` of `q x² - 2 p x + c`, or `(p - √r) / q · 2^exponent`
-    /// if `minus`, where `self` is `p` and `r = p² - q c`; with ties, range and zero as in [`quotient`](Self::quotient).
+    /// Returns the correctly rounded root `(p + √r) / q · 2^exponent` of `q x² - 2 p x + c`, or
+    /// `(p - √r) / q · 2^exponent` if `minus`, where `self` is `p` and `r = p² - q c`; with ties, range and zero as in
+    /// [`quotient`](Self::quotient).
     ///
     /// NaN if `q` is zero or `r` negative. At most [`MOST_LIMBS`] limbs each.
     #[inline]
@@ -218,8 +221,8 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         Some(Leading { bits: high(wide), next: low(wide), exponent, sticky: low(wide) != 0 || rest != 0 })
     }
 
-    /// The number as `(high + low) 2^exponent` within `2 u²` of itself, with `|high|` in `1..2` and `|low|` at most `2^-52`;
-    /// `None` for zero.
+    /// The number as `(high + low) 2^exponent` within `2 u²` of itself, with `|high|` in `1..2` and `|low|` at most
+    /// `2^-52`; `None` for zero.
     #[inline(always)]
     pub(crate) fn parts(&self) -> Option<([f64; 2], i32)> {
         let leading = self.leading()?;
@@ -236,8 +239,8 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
 }
 
 impl Leading {
-    /// The magnitude times the power of two that brings it to `1..2`, within `2 u²` of itself: the leading 53 bits, and the
-    /// next 63 bits rounded. Zero gives zero.
+    /// The magnitude times the power of two that brings it to `1..2`, within `2 u²` of itself: the leading 53 bits, and
+    /// the next 63 bits rounded. Zero gives zero.
     #[inline(always)]
     fn high_and_low(self) -> [f64; 2] {
         // (Signed: one instruction everywhere.)
@@ -252,7 +255,8 @@ const SAFE: core::ops::Range<i32> = -1018..1018;
 /// An operand that is smaller than the other by such a power of two is left to integers.
 const SMALL: i32 = 400;
 
-/// The error of [`rounded_quotient`] and [`rounded_root`] before the last rounding, relative: `docs/numerics.md`, section 1.
+/// The error of [`rounded_quotient`] and [`rounded_root`] before the last rounding, relative: `docs/numerics.md`,
+/// section 1.
 const ERROR: f64 = 64.0 * U * U;
 
 fma_dispatch! {
@@ -267,8 +271,9 @@ fn rounded_quotient_kernel<const FMA: bool>([n, n_low]: [f64; 2], [d, d_low]: [f
 }
 
 fma_dispatch! {
-    /// `(p + √r) / q` or, unless `over`, `q / (p + √r)`, correctly rounded, if that is certain; the numbers are not negative,
-    /// in `1..2` or zero, `p` then multiplied with the first shift, `r` with the second and its root with the third.
+    /// `(p + √r) / q` or, unless `over`, `q / (p + √r)`, correctly rounded, if that is certain; the numbers are not
+    /// negative, in `1..2` or zero, `p` then multiplied with the first shift, `r` with the second and its root with the
+    /// third.
     fn rounded_root(p: [f64; 2], r: [f64; 2], q: [f64; 2], shifts: [f64; 3], over: bool) -> Option<f64>
         = rounded_root_kernel;
 }
@@ -290,8 +295,8 @@ fn rounded_root_kernel<const FMA: bool>(
 /// What [`Fixed::quotient`] and [`Fixed::root`] accept.
 pub const MOST_LIMBS: usize = 12;
 
-/// Decides what the leading bits do not: an operand of [`MOST_LIMBS`] limbs takes one more where it is shifted, a midpoint
-/// times it two more, and both are squared: `2 (MOST_LIMBS + 3)`, and two for the sums.
+/// Decides what the leading bits do not: an operand of [`MOST_LIMBS`] limbs takes one more where it is shifted, a
+/// midpoint times it two more, and both are squared: `2 (MOST_LIMBS + 3)`, and two for the sums.
 type Long = Dyadic<32>;
 
 #[inline(always)]
@@ -340,9 +345,9 @@ impl<const LIMBS: usize> Neg for Fixed<LIMBS> {
     }
 }
 
-/// A power of two of which some doubles are multiples, each below `2^(64 LIMBS - 3)` times it in magnitude: so a [`Fixed`] of
-/// `LIMBS` limbs holds each of them and the difference of two, and one of `k LIMBS` limbs the sum of any six products of `k` of
-/// these.
+/// A power of two of which some doubles are multiples, each below `2^(64 LIMBS - 3)` times it in magnitude: so a
+/// [`Fixed`] of `LIMBS` limbs holds each of them and the difference of two, and one of `k LIMBS` limbs the sum of any
+/// six products of `k` of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window<const LIMBS: usize> {
     exponent: i32,

@@ -7,8 +7,8 @@
 //! 2. *double-double*: [`DoubleDouble`], about 106 bits, made of the error-free transformations [`two_sum`],
 //!    [`two_diff`] and [`two_prod`]; a value so computed is accepted when [`round_if_certain`] shows that its error
 //!    cannot change the rounding;
-//! 3. *fixed-point numbers*: [`Fixed`], exact for numbers whose exponents lie in a [`Window`]; first where they cost less
-//!    than double-double;
+//! 3. *fixed-point numbers*: [`Fixed`], exact for numbers whose exponents lie in a [`Window`]; first where they cost
+//!    less than double-double;
 //! 4. *integers*: [`Dyadic`], exact for every finite input, over- and underflow included; cold.
 //!
 //! [`vector`] has the operations of three-vectors over any of these numbers. Nothing here allocates, and every loop is

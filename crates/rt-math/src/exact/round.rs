@@ -25,8 +25,8 @@ pub fn round_if_certain(h: f64, l: f64, error: f64) -> Option<f64> {
     (lower == upper).then_some(upper)
 }
 
-/// Returns the lower and the upper end of the interval of [`round_if_certain`], rounded: where they are equal, so is the
-/// nearest double. For tests of several values at once, without a branch for each.
+/// Returns the lower and the upper end of the interval of [`round_if_certain`], rounded: where they are equal, so is
+/// the nearest double. For tests of several values at once, without a branch for each.
 #[inline(always)]
 #[must_use]
 pub fn rounded_ends(h: f64, l: f64, error: f64) -> (f64, f64) {

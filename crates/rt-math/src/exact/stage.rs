@@ -1,7 +1,8 @@
 //! Counts, in tests only, which stage decided: so that tests can show that every one is reached.
 
-/// Defines the stages of a crate's kernels, `decided`, which notes one, and in tests `decisions`, which gives the counts of
-/// all stages, in their order, since its last call on this thread. Compiled to nothing outside the tests of the crate.
+/// Defines the stages of a crate's kernels, `decided`, which notes one, and in tests `decisions`, which gives the
+/// counts of all stages, in their order, since its last call on this thread. Compiled to nothing outside the tests of
+/// the crate.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! count_stages {

@@ -1,10 +1,12 @@
-//! Matrices whose entries lie in a window of exponents: exact fixed-point polynomials, of which only the quotients are rounded.
+//! Matrices whose entries lie in a window of exponents: exact fixed-point polynomials, of which only the quotients are
+//! rounded.
 //!
-//! Such are doubles of like magnitude, and whole numbers: the usual singular or nearly singular matrix. With the columns
-//! `a_k`, the cofactors `c_k` and `G`, the dot products of the columns, row `k` of the pseudo-inverse is
+//! Such are doubles of like magnitude, and whole numbers: the usual singular or nearly singular matrix. With the
+//! columns `a_k`, the cofactors `c_k` and `G`, the dot products of the columns, row `k` of the pseudo-inverse is
 //!
 //! - rank 3: `c_k / det`;
-//! - rank 2: `b_k` over the sum of the principal 2 x 2 minors of `G`, with `b_0 = a_0 (G_11 + G_22) - a_1 G_01 - a_2 G_02`, ...;
+//! - rank 2: `b_k` over the sum of the principal 2 x 2 minors of `G`, with
+//!   `b_0 = a_0 (G_11 + G_22) - a_1 G_01 - a_2 G_02`, ...;
 //! - rank 1: `a_k` over the trace of `G`.
 //!
 //! `docs/numerics.md`, section 3, proves the formula for rank 2 and the sizes.
@@ -37,7 +39,8 @@ pub(super) fn row_sums(m: &DMat3) -> Option<DVec3> {
     }
 }
 
-/// The pseudo-inverse with its entries as exact quotients: `rows` of `V` limbs over `denominator` of `Q`, times `2^exponent`.
+/// The pseudo-inverse with its entries as exact quotients: `rows` of `V` limbs over `denominator` of `Q`, times
+/// `2^exponent`.
 struct Quotients<const V: usize, const Q: usize> {
     rank: usize,
     rows: [[Fixed<V>; 3]; 3],
@@ -131,8 +134,8 @@ impl<const V: usize, const Q: usize> Quotients<V, Q> {
 const CUT: f64 = 2.0 * U * U;
 
 fma_dispatch! {
-    /// For each numerator two doubles, the roundings of a lower and an upper bound of its quotient by the denominator: where they
-    /// are equal, so is its rounding. All are `high + low` within [`CUT`], in `1..2` in magnitude, or zero.
+    /// For each numerator two doubles, the roundings of a lower and an upper bound of its quotient by the denominator:
+    /// where they are equal, so is its rounding. All are `high + low` within [`CUT`], in `1..2` in magnitude, or zero.
     fn in_double_double(numerators: [[f64; 2]; 9], denominator: [f64; 2]) -> [[f64; 2]; 9] = in_double_double_kernel;
 }
 

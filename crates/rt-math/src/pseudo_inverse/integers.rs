@@ -1,10 +1,11 @@
 //! The pseudo-inverse in exact integers: every finite matrix, whatever its exponents and its rank.
 //!
-//! With `a_k` the columns of the matrix and `c_k` those of the matrix of its cofactors (`c_0 = a_1 x a_2`, ...), the row
-//! `k` of the pseudo-inverse is
+//! With `a_k` the columns of the matrix and `c_k` those of the matrix of its cofactors (`c_0 = a_1 x a_2`, ...), the
+//! row `k` of the pseudo-inverse is
 //!
 //! - rank 3: `c_k / det`, the inverse;
-//! - rank 2: `b_k / sum of c^2`, where `b_0 = c_1 x a_2 - c_2 x a_1`, ... (the adjugate, made linear in `a` and in `c`);
+//! - rank 2: `b_k / sum of c^2`, where `b_0 = c_1 x a_2 - c_2 x a_1`, ... (the adjugate, made linear in `a` and in
+//!   `c`);
 //! - rank 1: `a_k / sum of a^2`;
 //! - rank 0: zero.
 //!
@@ -33,8 +34,9 @@ pub(super) fn row_sums(m: &DMat3) -> DVec3 {
     if is_narrow(m) { row_sums_sized::<16>(m) } else { row_sums_sized::<136>(m) }
 }
 
-/// Whether 16 limbs are enough. Degree 4 in entries of w bits takes `(4 w + 8) / 64 + 2` limbs, sums of rows included, and two
-/// more for the rounding: w = 206 fits in 16 limbs, and the 2098 bits from one end of the doubles to the other fit in 136.
+/// Whether 16 limbs are enough. Degree 4 in entries of w bits takes `(4 w + 8) / 64 + 2` limbs, sums of rows included,
+/// and two more for the rounding: w = 206 fits in 16 limbs, and the 2098 bits from one end of the doubles to the other
+/// fit in 136.
 fn is_narrow(m: &DMat3) -> bool {
     const NARROW: u64 = 206 - 53;
     let exponents = m.to_cols_array().map(|x| (x.to_bits() >> 52 & 0x7ff).max(1));

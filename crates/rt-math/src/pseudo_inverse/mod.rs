@@ -35,9 +35,9 @@ pub struct PseudoInverse {
 /// Returns the Moore-Penrose pseudo-inverse of `m` and the rank of `m`.
 ///
 /// The rank is exact and every entry is correctly rounded (to nearest, ties to even), for all finite matrices: an entry
-/// beyond the range of doubles is infinite, one that underflows is a zero with the sign of the exact value, and one that
-/// is exactly zero is +0.0. For rank 3 this is the inverse. A matrix with an infinite or NaN entry has no pseudo-inverse:
-/// every entry of the answer is NaN and the rank is 0.
+/// beyond the range of doubles is infinite, one that underflows is a zero with the sign of the exact value, and one
+/// that is exactly zero is +0.0. For rank 3 this is the inverse. A matrix with an infinite or NaN entry has no
+/// pseudo-inverse: every entry of the answer is NaN and the rank is 0.
 ///
 /// The pseudo-inverse jumps where the rank drops: if the entries carry errors, so that a matrix meant to be singular is
 /// not, [`pseudo_inverse_with_tolerance`] is the function to use.
@@ -128,10 +128,12 @@ fn cancelling_kernel<const FMA: bool>(
     regular::inverse::<FMA, true>(&[a, b, c, d, e, f, g, h, i])
 }
 
-/// Returns the row sums of the pseudo-inverse of `m`: the least-squares solution of smallest length of `m x = (1, 1, 1)`.
+/// Returns the row sums of the pseudo-inverse of `m`: the least-squares solution of smallest length of
+/// `m x = (1, 1, 1)`.
 ///
-/// Each is correctly rounded, for all finite matrices, with zeros and the ends of the range as for [`pseudo_inverse`]. A matrix
-/// with an infinite or NaN entry gives NaN. The three sums of a matrix have one denominator, so each is one exact quotient.
+/// Each is correctly rounded, for all finite matrices, with zeros and the ends of the range as for [`pseudo_inverse`].
+/// A matrix with an infinite or NaN entry gives NaN. The three sums of a matrix have one denominator, so each is one
+/// exact quotient.
 ///
 /// ```
 /// use glam::{DMat3, DVec3};
@@ -203,14 +205,15 @@ fn cancelling_sums_kernel<const FMA: bool>(
 
 /// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.
 ///
-/// This is the meaning of `rtol` in `numpy.linalg.pinv`; the rank is the number of singular values that are kept. If that
-/// is the exact rank, the answer is that of [`pseudo_inverse`] to the bit. Otherwise its error, in the spectral norm and
-/// relative to its own norm, is at most 16 ε σₖ² / (σₖ² - σₖ₊₁²), with ε = 2⁻⁵², σₖ the last singular value that is
-/// kept and σₖ₊₁ the first that is dropped (tested, not proved), where entries neither over- nor underflow. Singular values are
-/// compared with an error of about 16 ε of each: so close to the threshold, either answer is possible.
+/// This is the meaning of `rtol` in `numpy.linalg.pinv`; the rank is the number of singular values that are kept. If
+/// that is the exact rank, the answer is that of [`pseudo_inverse`] to the bit. Otherwise its error, in the spectral
+/// norm and relative to its own norm, is at most 16 ε σₖ² / (σₖ² - σₖ₊₁²), with ε = 2⁻⁵², σₖ the last singular value
+/// that is kept and σₖ₊₁ the first that is dropped (tested, not proved), where entries neither over- nor underflow.
+/// Singular values are compared with an error of about 16 ε of each: so close to the threshold, either answer is
+/// possible.
 ///
-/// An `rtol` below 2⁻⁹⁰⁰, zero and negative numbers included, drops nothing; one of 1 or more drops everything. If `rtol`
-/// is NaN, or an entry is infinite or NaN, every entry of the answer is NaN and the rank is 0.
+/// An `rtol` below 2⁻⁹⁰⁰, zero and negative numbers included, drops nothing; one of 1 or more drops everything. If
+/// `rtol` is NaN, or an entry is infinite or NaN, every entry of the answer is NaN and the rank is 0.
 ///
 /// ```
 /// use glam::{DMat3, DVec3};
@@ -294,8 +297,8 @@ fn regular_inverse_kernel<const FMA: bool>(
     regular::inverse::<FMA, false>(&[a, b, c, d, e, f, g, h, i])
 }
 
-/// What `invert` makes of a finite matrix with entries far from 1, by one that is a power of two times it and about 1. `None` for
-/// others, and where the scaling loses a bit of the matrix or might of the answer.
+/// What `invert` makes of a finite matrix with entries far from 1, by one that is a power of two times it and about 1.
+/// `None` for others, and where the scaling loses a bit of the matrix or might of the answer.
 #[inline(always)]
 fn rescaled(m: &DMat3, invert: impl FnOnce(DMat3) -> PseudoInverse) -> Option<PseudoInverse> {
     const ORDINARY: core::ops::Range<f64> = power_of_two(-90)..power_of_two(90);

@@ -58,8 +58,8 @@ pub(super) fn adjugate<const FMA: bool>(m: &[f64; 9]) -> Option<Adjugate> {
     Some(Adjugate { h, l, b })
 }
 
-/// The adjugate and the reciprocal of the determinant, unless an entry is out of range or the determinant may be zero. If
-/// `CANCELS`, the determinant is computed in triple precision.
+/// The adjugate and the reciprocal of the determinant, unless an entry is out of range or the determinant may be zero.
+/// If `CANCELS`, the determinant is computed in triple precision.
 #[inline(always)]
 fn parts<const FMA: bool, const CANCELS: bool>(m: &[f64; 9]) -> Option<(Adjugate, Reciprocal<FMA>)> {
     let adjugate = adjugate::<FMA>(m)?;
@@ -87,7 +87,8 @@ pub(super) fn determinant<const FMA: bool>(m: &[f64; 9], Adjugate { h, l, b }: &
 /// The determinant by the first row, where it is far smaller than its terms: `s + low`, within `bound`.
 #[inline(always)]
 fn cancelling_determinant<const FMA: bool>(m: &[f64; 9]) -> (f64, f64, f64) {
-    // A cofactor is exactly h + e + t + f. Times the entry that gives terms of three orders, each about u of the one before.
+    // A cofactor is exactly h + e + t + f. Times the entry that gives terms of three orders, each about u of the one
+    // before.
     let (mut first, mut second, mut third, mut size) = ([0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]);
     for i in 0..3 {
         let (j, k) = (3 * ((i + 1) % 3), 3 * ((i + 2) % 3));

@@ -1,13 +1,13 @@
 //! The pseudo-inverse with small singular values taken as zero.
 //!
 //! If nothing is to be dropped, the answer is the exact function's. Otherwise only the largest singular value of some
-//! matrix is ever needed, which one-sided Jacobi (Hestenes) finds with a small relative error: `s_1` of the
-//! matrix `A`, `s_1 s_2` of its cofactors, `1 / s_3` of its inverse. The singular vectors that go with the first two, `u_1`,
-//! `v_1` and `u_3`, `v_3`, give the missing ones as `u_2 = u_3 x u_1` and `v_2 = v_3 x v_1`. So no small value is ever
-//! read off beside a large one, and the tolerance may be far below the precision of a double.
+//! matrix is ever needed, which one-sided Jacobi (Hestenes) finds with a small relative error: `s_1` of the matrix `A`,
+//! `s_1 s_2` of its cofactors, `1 / s_3` of its inverse. The singular vectors that go with the first two, `u_1`, `v_1`
+//! and `u_3`, `v_3`, give the missing ones as `u_2 = u_3 x u_1` and `v_2 = v_3 x v_1`. So no small value is ever read
+//! off beside a large one, and the tolerance may be far below the precision of a double.
 //!
-//! Before that, [`estimate`] decides where the singular values are far apart: then powers of the matrix and of its cofactors give
-//! their vectors.
+//! Before that, [`estimate`] decides where the singular values are far apart: then powers of the matrix and of its
+//! cofactors give their vectors.
 
 use glam::{DMat3, DVec3};
 
@@ -16,11 +16,12 @@ use super::regular::{adjugate, determinant};
 use crate::exact::{U, mantissa_and_exponent, power_of_two, scale, two_prod};
 use crate::fma_dispatch;
 
-/// Whether nothing is to be dropped, by the norms of the finite `m` and its pseudo-inverse; `false` if they leave it open.
+/// Whether nothing is to be dropped, by the norms of the finite `m` and its pseudo-inverse; `false` if they leave it
+/// open.
 #[inline(always)]
 pub(super) fn keeps_all(m: &DMat3, rtol: f64, exact: &PseudoInverse) -> bool {
-    // s_r / s_1 is at least 1 / (|A| |A+|), with Frobenius norms; the margin is far above the error of the norms, unless
-    // squares underflow, which the lower limit excludes.
+    // s_r / s_1 is at least 1 / (|A| |A+|), with Frobenius norms; the margin is far above the error of the norms,
+    // unless squares underflow, which the lower limit excludes.
     const MARGIN: f64 = 1.0 - 1e-6;
     const SMALLEST_SQUARE: f64 = 1e-200;
     let (a, x) = (square(m), square(&exact.matrix));
@@ -43,8 +44,8 @@ pub(super) enum Estimate {
     Unknown,
 }
 
-/// Where singular values are apart by [`FAR`] and from the threshold by a small part of it: the answer, or that nothing is to be
-/// dropped.
+/// Where singular values are apart by [`FAR`] and from the threshold by a small part of it: the answer, or that nothing
+/// is to be dropped.
 pub(super) fn estimate(m: &DMat3, rtol: f64) -> Estimate {
     // In the range of `adjugate`, with what is smaller by up to 2^-160.
     let shift = 60 - exponent(m);
@@ -60,7 +61,8 @@ fma_dispatch! {
     fn estimate_scaled(m: &DMat3, rtol: f64) -> Estimate = estimate_kernel;
 }
 
-/// Values whose ratio is below this leave less than the rounding errors of each other, squared, in what one multiplication gives.
+/// Values whose ratio is below this leave less than the rounding errors of each other, squared, in what one
+/// multiplication gives.
 const FAR: f64 = power_of_two(-27);
 
 #[inline(always)]
@@ -178,8 +180,8 @@ impl Singular {
     }
 }
 
-/// Makes the columns `p` and `q` of `g` orthogonal by a rotation, which `v` joins in; false if they are already, as far as
-/// it matters for the largest.
+/// Makes the columns `p` and `q` of `g` orthogonal by a rotation, which `v` joins in; false if they are already, as far
+/// as it matters for the largest.
 fn rotate(g: &mut [DVec3; 3], v: &mut [DVec3; 3], p: usize, q: usize) -> bool {
     let (alpha, beta, gamma) = (g[p].length_squared(), g[q].length_squared(), g[p].dot(g[q]));
     if gamma.abs() <= 0.5 * f64::EPSILON * alpha.max(beta) {

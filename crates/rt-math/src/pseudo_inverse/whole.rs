@@ -1,5 +1,5 @@
-//! Matrices that are a power of two times small whole numbers: every polynomial is exact in doubles, and each entry of the answer
-//! is one division.
+//! Matrices that are a power of two times small whole numbers: every polynomial is exact in doubles, and each entry of
+//! the answer is one division.
 //!
 //! Such are grid coordinates, zeros and ones, axes: the usual matrix of exact rank 1 or 2. The formulas are those of
 //! [`integers`](super::integers); `docs/numerics.md`, section 3, proves the sizes.
@@ -45,7 +45,8 @@ pub(super) fn is_likely(entries: &[f64; 9]) -> bool {
     bits << (11 + BITS) == 0 || bits & f64::INFINITY.to_bits() == 0
 }
 
-/// The rows of the pseudo-inverse as exact quotients: `rows` over `denominator`, times `2^shift`. An exact zero has either sign.
+/// The rows of the pseudo-inverse as exact quotients: `rows` over `denominator`, times `2^shift`. An exact zero has
+/// either sign.
 struct Quotients {
     rank: usize,
     rows: [DVec3; 3],

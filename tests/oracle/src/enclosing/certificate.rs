@@ -1,8 +1,8 @@
 //! How large a sphere around spheres must be: a certificate by duality, an independent derivation.
 //!
-//! For any point x and any weights w that are not negative and sum to 1, the radius of every enclosing sphere is at least the
-//! sum of `w_i (|x - c_i| + r_i)`, less `|g| |x* - x|`, where g is the sum of the weighted unit vectors from the centers to x
-//! and x* the true center. How x and w were found does not matter.
+//! For any point x and any weights w that are not negative and sum to 1, the radius of every enclosing sphere is at
+//! least the sum of `w_i (|x - c_i| + r_i)`, less `|g| |x* - x|`, where g is the sum of the weighted unit vectors from
+//! the centers to x and x* the true center. How x and w were found does not matter.
 
 use std::cmp::Ordering;
 
@@ -21,7 +21,8 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Certifies spheres by some of them, at most four, which are tried as the support. `None`: no sphere touches these.
+    /// Certifies spheres by some of them, at most four, which are tried as the support. `None`: no sphere touches
+    /// these.
     #[must_use]
     pub fn new(balls: &[Ball], support: &[Ball]) -> Option<Self> {
         // The largest first.
@@ -56,8 +57,8 @@ fn direction(x: &Vector, ball: &Ball) -> Vector {
     if sign(&distance) == Ordering::Equal { from } else { from.map(|c| c / &distance) }
 }
 
-/// The center of the sphere that the given ones touch from inside, by the normal equations, and their weights: in proportion
-/// to the distances.
+/// The center of the sphere that the given ones touch from inside, by the normal equations, and their weights: in
+/// proportion to the distances.
 fn tangent(support: &[Ball]) -> Option<(Vector, Vec<Big>)> {
     let largest = support.first()?;
     let origin = largest.center.each_ref().map(long);

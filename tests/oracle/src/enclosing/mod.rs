@@ -1,4 +1,5 @@
-//! The smallest sphere around spheres: by trying every set that could determine it. [`certificate`] is independent of that.
+//! The smallest sphere around spheres: by trying every set that could determine it. [`certificate`] is independent of
+//! that.
 
 pub mod certificate;
 
@@ -36,8 +37,8 @@ impl Ball {
     }
 }
 
-/// Returns the least radius of a sphere around spheres, in 400 bits: of all spheres that one to four of them determine, that
-/// of the smallest that holds the others.
+/// Returns the least radius of a sphere around spheres, in 400 bits: of all spheres that one to four of them determine,
+/// that of the smallest that holds the others.
 #[must_use]
 pub fn smallest_radius(balls: &[Ball]) -> Option<Big> {
     let balls: Vec<Ball> = balls.iter().map(Ball::long).collect();
