@@ -78,6 +78,11 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
         number
     }
 
+    /// Whether it is negative, the position of the lowest live limb, and the live limbs, the lowest first.
+    pub(super) fn parts(&self) -> (bool, i32, &[u64]) {
+        (self.negative, self.base, self.live())
+    }
+
     /// 2ᵏ.
     #[must_use]
     pub fn power_of_two(k: i32) -> Self {

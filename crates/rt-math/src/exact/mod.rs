@@ -11,6 +11,9 @@
 //!    less than double-double;
 //! 4. *integers*: [`Dyadic`], exact for every finite input, over- and underflow included; cold.
 //!
+//! What is no polynomial or quotient of doubles, such as an angle, has no exact form: it is enclosed by a [`Ball`] of
+//! any number of limbs, and what one length leaves open is asked again with the next.
+//!
 //! [`vector`] has the operations of three-vectors over any of these numbers. Nothing here allocates, and every loop is
 //! bounded by the number of limbs.
 //!
@@ -30,6 +33,7 @@
 //! assert_eq!(exact, Integer::from_f64(product) + Integer::from_f64(error));
 //! ```
 
+mod ball;
 mod dispatch;
 mod dot;
 mod double_double;
@@ -37,11 +41,13 @@ mod dyadic;
 mod enclosure;
 mod error_free;
 mod fixed;
+mod radius;
 mod round;
 mod scaling;
 pub(crate) mod stage;
 pub mod vector;
 
+pub use ball::Ball;
 pub use dispatch::has_fma;
 pub use dot::{difference_dot_sign, dot_sign, dot_with_error};
 pub use double_double::DoubleDouble;
