@@ -12,9 +12,9 @@ use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Dyadic;
-use super::enclosure::{high, low};
 use super::radius::Bound;
 use super::vector::{FromDifference, Product};
+use super::wide::{Wide, quotient};
 
 /// The numbers within `radius` of a midpoint of `64 LIMBS` bits.
 ///
@@ -97,13 +97,24 @@ impl<const LIMBS: usize> Ball<LIMBS> {
     #[must_use]
     pub fn from_dyadic<const N: usize>(number: &Dyadic<N>) -> Self {
         let (negative, base, live) = number.parts();
-        let from_top = |depth: usize| live.len().checked_sub(depth + 1).map_or(0, |at| live[at]);
+        Self::from_fraction(negative, 64 * (i64::from(base) + live.len() as i64), live, Bound::ZERO)
+    }
+
+    /// The same number with a midpoint of another length.
+    #[must_use]
+    pub fn with_limbs<const OTHER: usize>(&self) -> Ball<OTHER> {
+        Ball::from_fraction(self.negative, self.exponent.into(), &self.limbs, self.radius)
+    }
+
+    /// The ball around a fraction of any length, cut to its own; the lowest limb comes first.
+    fn from_fraction(negative: bool, exponent: i64, limbs: &[u64], radius: Bound) -> Self {
+        let from_top = |depth: usize| limbs.len().checked_sub(depth + 1).map_or(0, |at| limbs[at]);
         let mut wide =
             Wide { high: from_fn(|i| from_top(LIMBS - 1 - i)), low: from_fn(|i| from_top(2 * LIMBS - 1 - i)) };
-        // The lowest live limb is not zero; a last bit stands for what is left out, and is cut off with it.
-        wide.low[0] |= u64::from(live.len() > 2 * LIMBS);
-        let exponent = 64 * (i64::from(base) + live.len() as i64);
-        Self::from_wide(negative, exponent, wide, Bound::ZERO)
+        // A last bit stands for what is left out, and is cut off with it.
+        let left_out = limbs.len().saturating_sub(2 * LIMBS);
+        wide.low[0] |= u64::from(limbs[..left_out].iter().any(|&limb| limb != 0));
+        Self::from_wide(negative, exponent, wide, radius)
     }
 
     /// The ball with the fraction `limbs`, of which the highest bit is set, within the range of exponents.
@@ -178,7 +189,7 @@ impl<const LIMBS: usize> Ball<LIMBS> {
     #[must_use]
     pub fn sign(&self) -> Option<Ordering> {
         let (mantissa, exponent) = self.radius.parts();
-        let certain = self.radius.is_zero()
+        let certain = self.is_exact()
             || !self.is_centered() && (exponent + 32, mantissa << 32) < (self.exponent.into(), self.limbs[LIMBS - 1]);
         certain.then(|| match (self.is_centered(), self.negative) {
             (true, _) => Ordering::Equal,
@@ -209,8 +220,8 @@ impl<const LIMBS: usize> Ball<LIMBS> {
     /// The integer nearest to the midpoint, if it is below 2⁶²: one that the ball holds, if it holds one and is small.
     #[must_use]
     pub fn nearest_integer(&self) -> Option<i64> {
-        let half = Self::ONE.scale(-1);
-        (Self { radius: Bound::ZERO, ..*self } + half).midpoint_floor()
+        // The midpoint decides, however wide the ball, unless it is everything.
+        (self + Self::ONE.scale(-1)).midpoint_floor()
     }
 
     /// The floor of the midpoint, if it is below 2⁶² in magnitude.
@@ -565,155 +576,6 @@ impl<const LIMBS: usize> Product<Self, Self> for Ball<LIMBS> {
     }
 }
 
-/// A fraction of twice the length, as a sum or a product is before it is cut.
-struct Wide<const LIMBS: usize> {
-    high: [u64; LIMBS],
-    low: [u64; LIMBS],
-}
-
-impl<const LIMBS: usize> Wide<LIMBS> {
-    /// The limb at a position, counted from the lowest; zero beyond the highest.
-    fn limb(&self, at: usize) -> u64 {
-        if at < LIMBS {
-            self.low[at]
-        } else if at < 2 * LIMBS {
-            self.high[at - LIMBS]
-        } else {
-            0
-        }
-    }
-
-    fn from_limbs(limb: impl Fn(usize) -> u64) -> Self {
-        Self { low: from_fn(&limb), high: from_fn(|i| limb(i + LIMBS)) }
-    }
-
-    /// The bits above the highest that is set; `None` for zero.
-    fn leading_zeros(&self) -> Option<usize> {
-        let limbs = self.high.iter().rev().chain(self.low.iter().rev());
-        let (depth, limb) = limbs.enumerate().find(|&(_, &limb)| limb != 0)?;
-        Some(64 * depth + limb.leading_zeros() as usize)
-    }
-
-    /// The fraction times `2^bits`; what is moved beyond the top must be zero.
-    fn shift_up(self, bits: usize) -> Self {
-        if bits == 0 {
-            return self;
-        }
-        let (limbs, bits) = (bits / 64, bits % 64);
-        // Positions below zero wrap around to far above the top, where all is zero.
-        let at = |i: usize| self.limb(i.wrapping_sub(limbs));
-        if bits == 0 {
-            return Self::from_limbs(at);
-        }
-        Self::from_limbs(|i| at(i) << bits | at(i.wrapping_sub(1)) >> (64 - bits))
-    }
-
-    /// The fraction over `2^bits`; what is moved below the last bit is lost.
-    fn shift_down(self, bits: usize) -> Self {
-        if bits == 0 {
-            return self;
-        }
-        let (limbs, bits) = (bits / 64, bits % 64);
-        let at = |i: usize| self.limb(i + limbs);
-        if bits == 0 {
-            return Self::from_limbs(at);
-        }
-        Self::from_limbs(|i| at(i) >> bits | at(i + 1) << (64 - bits))
-    }
-
-    /// The sum, and whether it has a carry.
-    fn plus(mut self, other: &Self) -> (Self, bool) {
-        let mut carry = false;
-        for (x, &y) in self.low.iter_mut().zip(&other.low).chain(self.high.iter_mut().zip(&other.high)) {
-            (*x, carry) = x.carrying_add(y, carry);
-        }
-        (self, carry)
-    }
-
-    /// The difference, which is not negative.
-    fn minus(mut self, other: &Self) -> Self {
-        let mut borrow = false;
-        for (x, &y) in self.low.iter_mut().zip(&other.low).chain(self.high.iter_mut().zip(&other.high)) {
-            (*x, borrow) = x.borrowing_sub(y, borrow);
-        }
-        debug_assert!(!borrow);
-        self
-    }
-
-    /// The product of two fractions.
-    fn product(x: &[u64; LIMBS], y: &[u64; LIMBS]) -> Self {
-        let mut product = Self { high: [0; LIMBS], low: [0; LIMBS] };
-        for (i, &x) in x.iter().enumerate() {
-            // Short numbers have zeros below.
-            if x == 0 {
-                continue;
-            }
-            let mut carry = 0;
-            let mut add = |limb: &mut u64, y: u64| {
-                let wide = u128::from(x) * u128::from(y) + u128::from(*limb) + u128::from(carry);
-                (*limb, carry) = (low(wide), high(wide));
-            };
-            let (below, above) = y.split_at(LIMBS - i);
-            for (limb, &y) in product.low[i..].iter_mut().zip(below) {
-                add(limb, y);
-            }
-            for (limb, &y) in product.high[..i].iter_mut().zip(above) {
-                add(limb, y);
-            }
-            product.high[i] = carry;
-        }
-        product
-    }
-}
-
-/// The quotient of two numbers whose highest bits are set: whether it is at least 1, the fraction of its rest, cut off,
-/// and whether nothing was.
-///
-/// Source: D. Knuth, "The Art of Computer Programming", vol. 2, section 4.3.1, algorithm D.
-fn quotient<const LIMBS: usize>(x: &[u64; LIMBS], y: &[u64; LIMBS]) -> (bool, [u64; LIMBS], bool) {
-    let mut rest = *x;
-    let whole = x.iter().rev().ge(y.iter().rev());
-    if whole {
-        let mut borrow = false;
-        for (r, &y) in rest.iter_mut().zip(y) {
-            (*r, borrow) = r.borrowing_sub(y, borrow);
-        }
-    }
-    // A short divisor has zeros below, which take nothing away.
-    let zeros = y.iter().take_while(|&&limb| limb == 0).count();
-    let divisor = y[LIMBS - 1];
-    let mut digits = [0; LIMBS];
-    for digit in digits.iter_mut().rev() {
-        let mut top = rest[LIMBS - 1];
-        rest.copy_within(..LIMBS - 1, 1);
-        rest[0] = 0;
-        // The estimate is at most two too large, as the divisor has its highest bit set.
-        let two = u128::from(top) << 64 | u128::from(rest[LIMBS - 1]);
-        let mut estimate = if top >= divisor { u64::MAX } else { low(two / u128::from(divisor)) };
-        let (mut carry, mut borrow) = (0, false);
-        for (r, &y) in rest[zeros..].iter_mut().zip(&y[zeros..]) {
-            let wide = u128::from(estimate) * u128::from(y) + u128::from(carry);
-            (*r, borrow) = r.borrowing_sub(low(wide), borrow);
-            carry = high(wide);
-        }
-        (top, borrow) = top.borrowing_sub(carry, borrow);
-        for _ in 0..2 {
-            if borrow {
-                estimate -= 1;
-                let mut carry = false;
-                for (r, &y) in rest[zeros..].iter_mut().zip(&y[zeros..]) {
-                    (*r, carry) = r.carrying_add(y, carry);
-                }
-                (top, carry) = top.overflowing_add(carry.into());
-                borrow = !carry;
-            }
-        }
-        debug_assert!(top == 0 && !borrow);
-        *digit = estimate;
-    }
-    (whole, digits, rest.iter().all(|&limb| limb == 0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -1004,6 +866,12 @@ mod tests {
             check::<2>(&number, &truth);
             check::<4>(&number, &truth);
             check::<32>(&number, &truth);
+            let long = Ball::<64>::from_dyadic(&number);
+            judge(&long.with_limbs::<2>(), true, &[(truth.clone(), exact(1.0))], &Big::ZERO);
+            let x = ball::<4>(&mut rng);
+            for point in points(&x) {
+                assert!(holds(&x.with_limbs::<1>().with_limbs::<3>(), &point), "{x:?}");
+            }
         }
     }
 
@@ -1026,6 +894,7 @@ mod tests {
         assert!((huge * tiny - Number::ONE.scale(-1)).sign() == Some(Ordering::Equal));
         assert_eq!((Number::UNKNOWN * Number::ZERO).sign(), Some(Ordering::Equal), "what is unknown is finite");
         assert_eq!(Number::UNKNOWN.clamp().floor(), None);
+        assert_eq!(Number::UNKNOWN.nearest_integer(), None);
         let (low, high) = Number::UNKNOWN.clamp().ends();
         assert!((-1e-9..=0.0).contains(&low) && (1.0..1.0 + 1e-9).contains(&high), "{low:e} {high:e}");
         assert_eq!(Number::UNKNOWN.sqrt().ends(), (f64::NEG_INFINITY, f64::INFINITY));

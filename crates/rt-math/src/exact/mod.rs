@@ -46,6 +46,7 @@ mod round;
 mod scaling;
 pub(crate) mod stage;
 pub mod vector;
+mod wide;
 
 pub use ball::Ball;
 pub use dispatch::has_fma;

@@ -23,6 +23,7 @@ impl Bound {
     pub(super) const INFINITY: Self = Self { mantissa: ONE, exponent: i32::MAX };
 
     /// The bound next above or at `bits 2^exponent`.
+    #[inline]
     pub(super) fn above(bits: u64, exponent: i64) -> Self {
         let drop = 32 - bits.leading_zeros().cast_signed();
         if bits == 0 {
@@ -39,6 +40,7 @@ impl Bound {
     }
 
     /// A bound with an exponent of any size, rounded up.
+    #[inline]
     fn clamped(mantissa: u64, exponent: i64) -> Self {
         match i32::try_from(exponent) {
             Ok(exponent) if exponent > MOST => Self::INFINITY,
@@ -49,24 +51,29 @@ impl Bound {
     }
 
     /// 2ᵏ.
+    #[inline]
     pub(super) fn power_of_two(k: i64) -> Self {
         Self::clamped(ONE, k - 31)
     }
 
+    #[inline]
     pub(super) fn is_zero(self) -> bool {
         self.mantissa == 0
     }
 
+    #[inline]
     pub(super) fn is_infinite(self) -> bool {
         self.exponent > MOST
     }
 
     /// The mantissa, in `2^31 .. 2^32` or zero, and the exponent of its last bit.
+    #[inline]
     pub(super) fn parts(self) -> (u64, i64) {
         (self.mantissa, i64::from(self.exponent))
     }
 
     /// The sum, rounded up.
+    #[inline]
     pub(super) fn plus(self, other: Self) -> Self {
         let (large, small) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
         if large.is_infinite() || small.is_zero() {
@@ -79,6 +86,7 @@ impl Bound {
     }
 
     /// A lower bound of the difference, zero if it may be negative.
+    #[inline]
     pub(super) fn minus(self, other: Self) -> Self {
         if other.is_zero() {
             return self;
@@ -93,6 +101,7 @@ impl Bound {
     }
 
     /// The mantissa over `2^(exponent - 16)`, rounded up; the exponent is not below this one's.
+    #[inline]
     fn moved_up(self, exponent: i32) -> u64 {
         let shift = i64::from(exponent) - i64::from(self.exponent);
         let wide = self.mantissa << 16;
@@ -101,6 +110,7 @@ impl Bound {
     }
 
     /// The product, rounded up. Zero times infinity is zero: what is bounded is finite.
+    #[inline]
     pub(super) fn times(self, other: Self) -> Self {
         if self.is_infinite() && !other.is_zero() || other.is_infinite() && !self.is_zero() {
             return Self::INFINITY;
@@ -109,6 +119,7 @@ impl Bound {
     }
 
     /// The quotient, rounded up; infinite if the divisor is zero.
+    #[inline]
     pub(super) fn over(self, divisor: Self) -> Self {
         if divisor.is_zero() || self.is_infinite() {
             return Self::INFINITY;
@@ -118,6 +129,7 @@ impl Bound {
     }
 
     /// The square root, rounded up.
+    #[inline]
     pub(super) fn sqrt(self) -> Self {
         if self.is_infinite() {
             return self;
@@ -130,6 +142,7 @@ impl Bound {
     }
 
     /// The bound times 2ᵏ.
+    #[inline]
     pub(super) fn scale(self, k: i64) -> Self {
         if self.is_zero() || self.is_infinite() {
             return self;
