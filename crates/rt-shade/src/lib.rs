@@ -16,6 +16,7 @@
 //! ```
 
 mod arctangent;
+pub mod certified;
 pub mod color;
 mod double_word;
 mod mapping;

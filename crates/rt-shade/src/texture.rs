@@ -96,7 +96,7 @@ impl Texture {
     /// Coordinates outside `0..=1` are treated as [`texel`](Self::texel) says.
     pub fn nearest(&self, u: f64, v: f64) -> DVec3 {
         let (column, row) = self.texel(u, v);
-        self.samples_at(column, row) / f64::from(self.maxval)
+        self.color_at(column, row)
     }
 
     /// Returns the colour at `(u, v)`, interpolated linearly between the four nearest texel centers.
@@ -115,6 +115,11 @@ impl Texture {
             left + (right - left) * across
         });
         (upper + (lower - upper) * down) / f64::from(self.maxval)
+    }
+
+    /// The colour of a texel: each channel is the double nearest to its sample over `maxval`.
+    pub(crate) fn color_at(&self, column: usize, row: usize) -> DVec3 {
+        self.samples_at(column, row) / f64::from(self.maxval)
     }
 
     /// The three samples of a texel, not yet divided by `maxval`.
