@@ -11,6 +11,7 @@ mod simd;
 mod sphere;
 mod sphere_tree;
 mod stage;
+mod surface;
 mod triangle;
 
 pub use bvh::Bvh;
@@ -20,4 +21,5 @@ pub use ray::Ray;
 pub use shape::{Hit, Shape, Visits};
 pub use sphere::{Side, Sphere};
 pub use sphere_tree::SphereTree;
+pub use surface::{Bounded, EnclosedHit, Estimate, HitPoint};
 pub use triangle::{Inside, Triangle, Verdict, inside_triangle};

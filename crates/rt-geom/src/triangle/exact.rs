@@ -66,6 +66,30 @@ pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
     })
 }
 
+/// The sign of `d . (b - a) x (c - a)`: `Less` where the ray comes from the side that the normal leads to.
+pub(crate) fn slope_sign(triangle: &Triangle, ray: &Ray) -> Ordering {
+    let [a, b, c] = triangle.vertices;
+    let slope = ray.direction().cross(b - a).dot(c - a);
+    // As the filter's `sum`; false for NaN.
+    if triangle.edge < FARTHEST && slope.abs() > (18.0 * U * triangle.edge) * triangle.edge * ray.reach() {
+        return slope.total_cmp(&0.0);
+    }
+    ask(triangle, ray, |volumes| volumes.signs()[3])
+}
+
+/// The sign of `(a - o) . (b - a) x (c - a)`, for the ray's origin `o`: `Less` where it lies on the side that the
+/// normal leads to.
+pub(crate) fn height_sign(triangle: &Triangle, ray: &Ray) -> Ordering {
+    let [a, b, c] = triangle.vertices;
+    let from = a - ray.origin();
+    let height = (b - a).cross(c - a).dot(from);
+    let size = triangle.edge * (from.x.abs() + from.y.abs() + from.z.abs());
+    if triangle.edge + size < FARTHEST && height.abs() > (18.0 * U * triangle.edge) * size + UNDERFLOW {
+        return height.total_cmp(&0.0);
+    }
+    ask(triangle, ray, |volumes| volumes.height_sign())
+}
+
 /// What exact arithmetic, of whatever size, knows of a ray and a triangle.
 trait Volumes {
     /// The signs of the three volumes and of their sum.

@@ -27,6 +27,7 @@ use rt_math::exact::{U, power_of_two};
 
 use crate::Ray;
 use crate::ray::{FilterVerdict, PreparedRay, larger, max_abs};
+pub(crate) use exact::{height_sign, slope_sign};
 use filter::{filter, surely_leans};
 pub use locate::{Inside, inside_triangle};
 
@@ -87,6 +88,13 @@ impl Triangle {
     #[must_use]
     pub fn vertices(&self) -> [DVec3; 3] {
         self.vertices
+    }
+
+    /// `E`: at least the sum over the axes of the larger component of two edges. Infinite if that is too small for the
+    /// filters' bounds.
+    #[inline(always)]
+    pub(crate) fn edge(&self) -> f64 {
+        self.edge
     }
 
     /// Returns the `t` of the hit, correctly rounded, if it is in the range.

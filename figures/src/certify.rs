@@ -1,0 +1,183 @@
+//! Certified samples: a byte is taken only if every number within the bound of its error rounds to it.
+//!
+//! A pixel that is not certain in doubles climbs: to vectors that are good to a few ulp with exact sides, and then to
+//! enclosures with 128, 256, ... 2,048 bits. What is still open is taken for an exact tie, and counted.
+
+use glam::DVec3;
+use rt_geom::{Hit, Ray};
+use rt_math::exact::{Ball, U};
+use rt_shade::color::{clamp, to_sample};
+use rt_shade::{PointLight, Shaded};
+use serde::Serialize;
+
+use crate::objects::Objects;
+use crate::scene::Scene;
+use crate::seen::Seen;
+
+/// How many samples each stage has decided, all of a pixel by the stage that decided its last byte.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Certified {
+    /// In doubles with a bound.
+    pub doubles: u64,
+    /// From vectors in double-double, with exact sides.
+    pub double_double: u64,
+    /// By enclosures with 128, 256, 512, 1,024 and 2,048 bits.
+    pub enclosures: [u64; 5],
+    /// Taken for an exact tie, since 2,048 bits left them open.
+    pub undecided: u64,
+}
+
+impl Certified {
+    /// The sum of two counts.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            doubles: self.doubles + other.doubles,
+            double_double: self.double_double + other.double_double,
+            enclosures: [0, 1, 2, 3, 4].map(|i| self.enclosures[i] + other.enclosures[i]),
+            undecided: self.undecided + other.undecided,
+        }
+    }
+}
+
+/// A scene's pixels, and how they came about.
+pub(crate) struct Certifier<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) objects: &'a Objects,
+    pub(crate) maxval: u16,
+    pub(crate) counts: Certified,
+}
+
+impl Certifier<'_> {
+    /// The samples of a pixel whose rays see these hits, in these colours (one for each hit).
+    pub(crate) fn pixel(&mut self, rays: &[Ray], hits: &[Option<Hit>], shaded: &[Shaded]) -> [u16; 3] {
+        let count = rays.len() as u64;
+        if shaded.is_empty() {
+            // The mean of equal colours.
+            self.counts.doubles += count;
+            return self.scene.background.to_array().map(|channel| to_sample(channel, self.maxval));
+        }
+        if let Some(samples) = certain(self.mean(hits, shaded), rays.len(), self.maxval) {
+            self.counts.doubles += count;
+            return samples;
+        }
+        self.climb(rays, hits, shaded)
+    }
+
+    /// The sum of a pixel's clamped colours, and a bound of its error without the rounding of the sum.
+    fn mean(&self, hits: &[Option<Hit>], shaded: &[Shaded]) -> Shaded {
+        let mut shaded = shaded.iter();
+        let mut sum = Shaded { color: DVec3::ZERO, error: 0.0 };
+        for hit in hits {
+            let color = match hit {
+                None => self.scene.background,
+                Some(_) => {
+                    let Shaded { color, error } = *shaded.next().expect("one for each hit");
+                    sum.error += error;
+                    color
+                }
+            };
+            // Each sample is clamped before the mean, so that one bright highlight does not outshine its pixel.
+            sum.color += clamp(color);
+        }
+        sum
+    }
+
+    /// The stages after doubles.
+    #[cold]
+    #[inline(never)]
+    fn climb(&mut self, rays: &[Ray], hits: &[Option<Hit>], shaded: &[Shaded]) -> [u16; 3] {
+        let count = rays.len() as u64;
+        let lights = &self.scene.lights;
+        let mut next = shaded.iter();
+        let shaded: Vec<Shaded> = (rays.iter().zip(hits))
+            .filter_map(|(ray, hit)| Some((ray, (*hit)?)))
+            .map(|(ray, hit)| match next.next() {
+                Some(&exact) if exact.error == 0.0 => exact,
+                _ => Seen::new(self.scene, self.objects, ray, hit).refined(lights),
+            })
+            .collect();
+        if let Some(samples) = certain(self.mean(hits, &shaded), rays.len(), self.maxval) {
+            self.counts.double_double += count;
+            return samples;
+        }
+        let pixel = Pixel { certifier: self, rays, hits, shaded: &shaded, lights };
+        let stages: [fn(&Pixel) -> Option<[u16; 3]>; 5] = [
+            |pixel| pixel.enclosed::<2>(None),
+            |pixel| pixel.enclosed::<4>(None),
+            |pixel| pixel.enclosed::<8>(None),
+            |pixel| pixel.enclosed::<16>(None),
+            |pixel| pixel.enclosed::<32>(None),
+        ];
+        let decided = stages.iter().enumerate().find_map(|(stage, enclosed)| Some((stage, enclosed(&pixel)?)));
+        match decided {
+            Some((stage, samples)) => {
+                self.counts.enclosures[stage] += count;
+                samples
+            }
+            None => {
+                let samples = pixel.enclosed::<32>(Some(&mut 0)).unwrap_or([0; 3]);
+                self.counts.undecided += count;
+                samples
+            }
+        }
+    }
+}
+
+/// A pixel that doubles leave open.
+struct Pixel<'a> {
+    certifier: &'a Certifier<'a>,
+    rays: &'a [Ray],
+    hits: &'a [Option<Hit>],
+    /// One for each hit.
+    shaded: &'a [Shaded],
+    lights: &'a [PointLight],
+}
+
+impl Pixel<'_> {
+    /// The samples, if `64 LIMBS` bits decide; with `ties`, what is open is taken for equality.
+    fn enclosed<const LIMBS: usize>(&self, mut ties: Option<&mut u32>) -> Option<[u16; 3]> {
+        let Certifier { scene, objects, maxval, .. } = *self.certifier;
+        let known = |color: DVec3| clamp(color).to_array().map(Ball::<LIMBS>::from_f64);
+        let mut sum = [Ball::<LIMBS>::ZERO; 3];
+        let mut shaded = self.shaded.iter();
+        for (ray, hit) in self.rays.iter().zip(self.hits) {
+            let color = match (hit, hit.and_then(|_| shaded.next())) {
+                (None, _) => known(scene.background),
+                (Some(_), Some(exact)) if exact.error == 0.0 => known(exact.color),
+                (Some(hit), _) => {
+                    let seen = Seen::new(scene, objects, ray, *hit);
+                    seen.enclosed(self.lights, ties.as_deref_mut())?.map(|channel| channel.clamp())
+                }
+            };
+            sum = [0, 1, 2].map(|i| sum[i] + color[i]);
+        }
+        // ⌊maxval sum / n + ½⌋
+        let count = Ball::from_integer(self.rays.len() as i64);
+        let scaled = sum.map(|sum| sum * Ball::from_integer(maxval.into()) / count + Ball::ONE.scale(-1));
+        let mut samples = [0; 3];
+        for (sample, scaled) in samples.iter_mut().zip(&scaled) {
+            // At the whole number itself a byte rounds up.
+            let floor = scaled.floor().or_else(|| ties.is_some().then(|| scaled.nearest_integer())?)?;
+            *sample = u16::try_from(floor.clamp(0, maxval.into())).expect("a number in the range of maxval");
+        }
+        Some(samples)
+    }
+}
+
+/// The samples of a mean of `count` colours in `0..=1`, if none of the numbers within the bound of the error of their
+/// sum has other ones.
+///
+/// `maxval sum / count + ½` is rounded three times, and the sum once for each colour after the first.
+fn certain(Shaded { color, error }: Shaded, count: usize, maxval: u16) -> Option<[u16; 3]> {
+    if count == 1 && error == 0.0 {
+        return Some(color.to_array().map(|channel| to_sample(channel, maxval)));
+    }
+    let (count, most) = (count as f64, f64::from(maxval));
+    let slack = 1.01 * most * (error / count + (count + 4.0) * U);
+    let scaled = color.to_array().map(|channel| most * (channel / count) + 0.5);
+    #[expect(clippy::cast_possible_truncation, reason = "the whole part of a number from ¼ to maxval + ¾")]
+    let [low, high] = [-slack, slack].map(|slack| scaled.map(|scaled| (scaled + slack) as i32));
+    // False for NaN.
+    (slack < 0.25 && low == high).then(|| low.map(|whole| whole as u16))
+}
