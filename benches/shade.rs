@@ -6,7 +6,7 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
 use oracle::Random;
-use rt_shade::{Material, PointLight, SurfacePoint, Texture, phong, phong_batch, sphere_uv};
+use rt_shade::{Material, PointLight, Shaded, SurfacePoint, Texture, phong, phong_batch, sphere_uv};
 
 /// Inputs of each bench: enough that branches are not learnt by heart.
 const COUNT: usize = 4096;
@@ -64,24 +64,18 @@ fn shading(criterion: &mut Criterion) {
     for shininess in [32.0, 51.3] {
         let material = Material { ambient: 0.1, diffuse: 0.7, specular: 0.5, shininess };
         for count in [1, 2] {
+            let seen = |&v: &DVec3| SurfacePoint::new(v, v - 5.0 * DVec3::Z, v, DVec3::ONE, &material);
             let id = BenchmarkId::new(format!("ours_shininess_{shininess}"), format!("{count}_lights"));
             group.bench_function(id, |b| {
                 b.iter(|| {
                     for &v in &vectors {
                         let lights = &lights[..count];
-                        black_box(phong(black_box(v), v - 5.0 * DVec3::Z, v, DVec3::ONE, &material, lights));
+                        black_box(phong(black_box(&seen(&v)), lights));
                     }
                 });
             });
-            let seen = |&v: &DVec3| SurfacePoint {
-                point: v,
-                direction: v - 5.0 * DVec3::Z,
-                normal: v,
-                surface: DVec3::ONE,
-                material: &material,
-            };
             let points: Vec<_> = vectors.iter().map(seen).collect();
-            let mut colors = vec![DVec3::ZERO; COUNT];
+            let mut colors = vec![Shaded { color: DVec3::ZERO, error: 0.0 }; COUNT];
             let id = BenchmarkId::new(format!("ours_batch_shininess_{shininess}"), format!("{count}_lights"));
             group.bench_function(id, |b| {
                 b.iter(|| phong_batch(black_box(&points), &lights[..count], black_box(&mut colors)));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rt_geom::{Bvh, Inside, Ray, Sphere, Triangle, inside_triangle, plane_by_pseudo_inverse};
 use rt_math::{Roots, reflect};
-use rt_shade::{Material, PointLight, Texture, phong, sphere_uv, texture_uv};
+use rt_shade::{Material, PointLight, SurfacePoint, Texture, phong, sphere_uv, texture_uv};
 
 const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 
@@ -67,7 +67,9 @@ fn lamp(position: DVec3) -> PointLight {
 #[test]
 fn the_lit_side_is_bright_and_the_dark_side_does_not_glow() {
     for material in [MATTE, MIRROR] {
-        let shade = |light: PointLight| phong(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &material, &[light]);
+        let shade = |light: PointLight| {
+            phong(&SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &material), &[light]).color
+        };
         assert_eq!(shade(lamp(2.0 * DVec3::Z)), DVec3::ONE, "lit from the front, {material:?}");
         assert_eq!(shade(lamp(-2.0 * DVec3::Z)), DVec3::ZERO, "lit from behind, {material:?}");
     }
@@ -77,7 +79,7 @@ fn the_lit_side_is_bright_and_the_dark_side_does_not_glow() {
 fn the_highlight_faces_the_eye() {
     let mirrored = |direction: DVec3| {
         let light = lamp(DVec3::new(3.0, 0.0, 4.0));
-        phong(DVec3::ZERO, direction, DVec3::Z, DVec3::ONE, &MIRROR, &[light]).x
+        phong(&SurfacePoint::new(DVec3::ZERO, direction, DVec3::Z, DVec3::ONE, &MIRROR), &[light]).color.x
     };
     let towards_the_mirror_image = DVec3::new(3.0, 0.0, -4.0);
     let full = mirrored(towards_the_mirror_image);
@@ -89,7 +91,10 @@ fn the_highlight_faces_the_eye() {
 #[test]
 fn a_red_lamp_lights_red() {
     let red = PointLight { position: DVec3::Z, color: DVec3::X };
-    assert_eq!(phong(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &MATTE, &[red]), DVec3::X);
+    assert_eq!(
+        phong(&SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &MATTE), &[red]).color,
+        DVec3::X
+    );
 }
 
 #[test]

@@ -12,6 +12,7 @@ use rt_io::Pixmap;
 use serde::Serialize;
 
 use crate::camera::{Size, View};
+use crate::certify::Certified;
 use crate::figure::Figure;
 use crate::objects::{Method, Objects};
 use crate::options::{DrawOptions, PictureSize};
@@ -36,6 +37,8 @@ struct Account {
     triangles: usize,
     rays: u64,
     hits: u64,
+    /// How many of the rays' samples each stage has decided.
+    certified: Certified,
     seconds: Seconds,
     /// The largest amount of memory that the process has held so far; null where the system does not say.
     peak_memory_bytes: Option<u64>,
@@ -175,6 +178,7 @@ fn draw(
             triangles,
             rays,
             hits,
+            certified: drawn.certified,
             seconds,
             peak_memory_bytes,
         };

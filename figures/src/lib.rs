@@ -18,6 +18,7 @@
 
 mod assets;
 pub mod camera;
+pub mod certify;
 pub mod cli;
 pub mod convert;
 pub mod draw;
@@ -32,6 +33,7 @@ pub mod output;
 pub mod render;
 pub mod scene;
 pub mod scene_file;
+mod seen;
 mod stage;
 pub mod stderr;
 mod text;

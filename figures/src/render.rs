@@ -1,4 +1,4 @@
-//! From a scene to pixels: rays, the closest hit of each, its colour, and the mean of the colours in a pixel.
+//! From a scene to pixels: rays, the closest hit of each, its colour, and the mean of the colours in a pixel, certified.
 //!
 //! The picture is cut into bands of rows that rayon hands to threads, each band into tiles whose rays go through
 //! the tree together. A pixel's value depends on nothing but its own rays, summed in a fixed order, so the bytes are
@@ -9,13 +9,14 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rt_geom::{Hit, Ray, Shape};
-use rt_shade::color::{clamp, interpolate, to_sample};
-use rt_shade::{SurfacePoint, phong_batch, texture_uv};
+use rt_geom::{Hit, Ray};
+use rt_shade::{Shaded, SurfacePoint, phong, phong_batch};
 
 use crate::camera::{Size, View};
+use crate::certify::{Certified, Certifier};
 use crate::objects::{Method, Objects};
-use crate::scene::{DEFAULT_MATERIAL, Filter, Look, LookPlace, Paint, Scene};
+use crate::scene::Scene;
+use crate::seen::Seen;
 
 /// The size of a tile in pixels: its rays are close enough together to visit the same nodes of the tree, and many
 /// enough to be worth a call.
@@ -42,6 +43,8 @@ pub struct Rows {
     pub rays: u64,
     /// Rays that met an object.
     pub hits: u64,
+    /// What decided the samples.
+    pub certified: Certified,
 }
 
 impl Renderer {
@@ -64,82 +67,42 @@ impl Renderer {
         let row_length = 3 * width as usize;
         let tile_width = (TILE_RAYS / TILE_HEIGHT / samples / samples).clamp(1, TILE_WIDTH);
         let mut picture = vec![0; row_length * rows.len()];
-        let hits = (rows.clone().into_par_iter().step_by(TILE_HEIGHT as usize))
+        let (hits, certified) = (rows.clone().into_par_iter().step_by(TILE_HEIGHT as usize))
             .zip(picture.par_chunks_mut(row_length * TILE_HEIGHT as usize))
             .map_init(RayTile::default, |tile, (top, band)| {
                 let bottom = rows.end.min(top + TILE_HEIGHT);
-                let mut hits = 0;
+                let (mut hits, mut certifier) = (0, self.certifier(maxval));
                 for left in (0..width).step_by(tile_width as usize) {
                     let right = width.min(left + tile_width);
-                    hits += tile.trace(self, view, left..right, top..bottom);
+                    hits += tile.trace(self, view, left..right, top..bottom, &mut certifier);
                     for (tile_row, line) in
                         tile.pixels.chunks_exact((right - left) as usize).zip(band.chunks_exact_mut(row_length))
                     {
-                        for (color, pixel) in tile_row.iter().zip(line[3 * left as usize..].chunks_exact_mut(3)) {
-                            pixel.copy_from_slice(&color.to_array().map(|channel| to_sample(channel, maxval)));
+                        for (samples, pixel) in tile_row.iter().zip(line[3 * left as usize..].chunks_exact_mut(3)) {
+                            pixel.copy_from_slice(samples);
                         }
                     }
                 }
                 advance(u64::from(bottom - top));
-                hits
+                (hits, certifier.counts)
             })
-            .sum();
+            .reduce(Default::default, |a: (u64, Certified), b| (a.0 + b.0, a.1.plus(b.1)));
         let rays = u64::from(width) * rows.len() as u64 * u64::from(samples) * u64::from(samples);
-        Rows { samples: picture, rays, hits }
+        Rows { samples: picture, rays, hits, certified }
     }
 
-    /// The colour that a ray brings back.
-    pub fn color(&self, ray: &Ray, hit: Option<Hit>) -> DVec3 {
-        hit.map_or(self.scene.background, |hit| self.seen(ray, hit).shaded(&self.scene.lights))
+    /// The certified samples of a pixel with the one ray, which hits this, in `0..=maxval`.
+    pub fn sample(&self, ray: &Ray, hit: Option<Hit>, maxval: u16) -> [u16; 3] {
+        let shaded = hit.map(|hit| phong(&self.seen(ray, hit).estimated(), &self.scene.lights));
+        self.certifier(maxval).pixel(&[*ray], &[hit], shaded.as_slice())
     }
 
-    /// The point that a ray hits.
-    fn seen(&self, ray: &Ray, hit: Hit) -> SurfacePoint<'_> {
-        let Hit { index, t } = hit;
-        let (point, direction) = (ray.at(t), ray.direction());
-        match self.objects.shape(index) {
-            Shape::Sphere(sphere) => {
-                // A sphere of radius 0 faces the eye.
-                let normal = if sphere.radius() > 0.0 { sphere.normal(point) } else { -direction };
-                let (surface, material) = match self.scene.sphere_looks[index].place() {
-                    LookPlace::Color(at) => (self.scene.colors[at], &DEFAULT_MATERIAL),
-                    LookPlace::Look(at) => {
-                        let Look { paint, material } = &self.scene.looks[at];
-                        (paint_at(paint, normal), material)
-                    }
-                };
-                SurfacePoint { point, direction, normal, surface, material }
-            }
-            Shape::Triangle(triangle) => {
-                let index = index - self.scene.sphere_looks.len();
-                let look = self.scene.look(self.scene.triangle_looks[index]);
-                let Look { paint, material } = look.expect("a triangle has a look");
-                let colors = self.scene.vertex_colors.get(index).and_then(Option::as_ref);
-                let surface = match (colors, paint) {
-                    (Some(colors), _) => {
-                        triangle.hit_barycentric(ray).map_or(colors[0], |weights| interpolate(colors, weights))
-                    }
-                    (None, Paint::Color(color)) => *color,
-                    (None, Paint::Image { .. }) => unreachable!("a triangle's look has a color"),
-                };
-                let normal = triangle.normal().unwrap_or(-direction);
-                SurfacePoint { point, direction, normal, surface, material }
-            }
-        }
+    fn seen<'ray>(&self, ray: &'ray Ray, hit: Hit) -> Seen<'_, 'ray> {
+        Seen::new(&self.scene, &self.objects, ray, hit)
     }
-}
 
-/// The colour of a sphere where its outward normal is `normal`.
-fn paint_at(paint: &Paint, normal: DVec3) -> DVec3 {
-    match paint {
-        Paint::Color(color) => *color,
-        Paint::Image { texture, mirrored, filter } => {
-            let (u, v) = texture_uv(normal, *mirrored);
-            match filter {
-                Filter::Nearest => texture.nearest(u, v),
-                Filter::Bilinear => texture.bilinear(u, v),
-            }
-        }
+    fn certifier(&self, maxval: u16) -> Certifier<'_> {
+        Certifier { scene: &self.scene, objects: &self.objects, maxval, counts: Certified::default() }
     }
 }
 
@@ -153,14 +116,21 @@ struct RayTile<'a> {
     hits: Vec<Option<Hit>>,
     /// What the rays see, and in which colours, without those that see nothing.
     seen: Vec<SurfacePoint<'a>>,
-    colors: Vec<DVec3>,
-    /// The colours of the tile's pixels, row by row: the result.
-    pixels: Vec<DVec3>,
+    shaded: Vec<Shaded>,
+    /// The tile's pixels, row by row: the result.
+    pixels: Vec<[u16; 3]>,
 }
 
 impl<'a> RayTile<'a> {
-    /// Finds the colours of a tile's pixels and returns how many rays hit something.
-    fn trace(&mut self, renderer: &'a Renderer, view: &View, columns: Range<u32>, rows: Range<u32>) -> u64 {
+    /// Finds the samples of a tile's pixels and returns how many rays hit something.
+    fn trace(
+        &mut self,
+        renderer: &'a Renderer,
+        view: &View,
+        columns: Range<u32>,
+        rows: Range<u32>,
+        certifier: &mut Certifier,
+    ) -> u64 {
         let samples = view.size().samples;
         self.rays.clear();
         self.across.clear();
@@ -178,22 +148,29 @@ impl<'a> RayTile<'a> {
         self.hits.resize(self.rays.len(), None);
         renderer.objects.closest_batch(&self.rays, &mut self.hits);
 
-        self.seen.clear();
         let met = self.rays.iter().zip(&self.hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
-        self.seen.extend(met.map(|(ray, hit)| renderer.seen(ray, hit)));
-        self.colors.resize(self.seen.len(), DVec3::ZERO);
-        phong_batch(&self.seen, &renderer.scene.lights, &mut self.colors);
-
-        // Each sample is clamped before the mean, so that one bright highlight does not outshine its pixel.
-        self.pixels.clear();
-        let mut colors = self.colors.iter();
-        let mut color = |hit: &Option<Hit>| {
-            clamp(if hit.is_some() { *colors.next().expect("one for each hit") } else { renderer.scene.background })
-        };
-        for hits in self.hits.chunks_exact((samples * samples) as usize) {
-            let sum: DVec3 = hits.iter().map(&mut color).sum();
-            self.pixels.push(sum / f64::from(samples * samples));
+        let lights = &renderer.scene.lights;
+        self.shaded.clear();
+        if lights.is_empty() {
+            self.shaded.extend(met.map(|(ray, hit)| {
+                let seen = renderer.seen(ray, hit);
+                seen.flat().unwrap_or_else(|| phong(&seen.estimated(), lights))
+            }));
+        } else {
+            self.seen.clear();
+            self.seen.extend(met.map(|(ray, hit)| renderer.seen(ray, hit).estimated()));
+            self.shaded.resize(self.seen.len(), Shaded { color: DVec3::ZERO, error: f64::INFINITY });
+            phong_batch(&self.seen, lights, &mut self.shaded);
         }
-        self.seen.len() as u64
+
+        self.pixels.clear();
+        let mut shaded = &self.shaded[..];
+        let in_pixel = (samples * samples) as usize;
+        for (rays, hits) in self.rays.chunks_exact(in_pixel).zip(self.hits.chunks_exact(in_pixel)) {
+            let (now, later) = shaded.split_at(hits.iter().flatten().count());
+            shaded = later;
+            self.pixels.push(certifier.pixel(rays, hits, now));
+        }
+        self.shaded.len() as u64
     }
 }

@@ -6,13 +6,13 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use rt_shade::{Material, PointLight, color, phong};
+//! use rt_shade::{Material, PointLight, SurfacePoint, color, phong};
 //!
 //! let material = Material { ambient: 0.1, diffuse: 0.9, specular: 0.0, shininess: 1.0 };
 //! let lamp = PointLight { position: DVec3::new(0.0, 0.0, 5.0), color: DVec3::ONE };
-//! let (point, direction, normal) = (DVec3::ZERO, DVec3::NEG_Z, DVec3::Z);
-//! let shaded = phong(point, direction, normal, DVec3::new(1.0, 0.5, 0.0), &material, &[lamp]);
-//! assert_eq!(shaded.to_array().map(|c| color::to_sample(c, 255)), [255, 128, 0]);
+//! let seen = SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::new(1.0, 0.5, 0.0), &material);
+//! let shaded = phong(&seen, &[lamp]);
+//! assert_eq!(shaded.color.to_array().map(|c| color::to_sample(c, 255)), [255, 128, 0]);
 //! ```
 
 mod arctangent;
@@ -25,7 +25,7 @@ mod phong_batch;
 mod power;
 mod texture;
 
-pub use mapping::{sphere_uv, texture_uv};
-pub use phong::{Material, PointLight, phong};
-pub use phong_batch::{SurfacePoint, phong_batch};
+pub use mapping::{sphere_uv, texture_uv, texture_uv_within};
+pub use phong::{Errors, Material, PointLight, Shaded, Sides, SurfacePoint, phong, phong_with_sides};
+pub use phong_batch::phong_batch;
 pub use texture::Texture;

@@ -18,6 +18,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
+use rt_math::exact::{U, power_of_two_near_inverse};
 
 use crate::arctangent::arctangent_over_pi;
 use crate::double_word::{DoubleWord, fast_two_sum, split};
@@ -69,6 +70,31 @@ pub fn sphere_uv(normal: DVec3) -> (f64, f64) {
 pub fn texture_uv(normal: DVec3, mirrored: bool) -> (f64, f64) {
     let DVec3 { x, y, z } = normal;
     sphere_uv(if mirrored { normal } else { DVec3::new(x, y, -z) })
+}
+
+/// Returns what [`texture_uv`] returns for a normal that may be off by a vector of length `error`, and bounds of the
+/// errors of `u` and `v`: infinite or NaN where nothing is known, as `u` is near a pole.
+///
+/// An angle is off by at most `1.01 e / h` where the direction is off by `e` beside its length `h`; in shares of a turn,
+/// and of half a turn, `docs/numerics.md`, section 11, has the proof.
+#[must_use]
+pub fn texture_uv_within(normal: DVec3, error: f64, mirrored: bool) -> ((f64, f64), (f64, f64)) {
+    let coordinates = texture_uv(normal, mirrored);
+    let h_square = normal.x * normal.x + normal.z * normal.z;
+    let length_square = h_square + normal.y * normal.y;
+    let largest = normal.abs().max_element();
+    if !(1e-100..1e100).contains(&largest) && largest.is_finite() && largest > 0.0 {
+        // By a power of two, so that no square leaves the range of f64.
+        let factor = power_of_two_near_inverse(largest);
+        return (coordinates, texture_uv_within(normal * factor, error * factor, mirrored).1);
+    }
+    let share = |turns: f64, square: f64| {
+        let relative = error / square.sqrt();
+        // Beside an axis that a normal may lie on, nothing is said. False for NaN.
+        let known = relative <= 1.0 / 16.0 && square > 1e-240;
+        if known { turns * relative + 1.1 * U } else { f64::INFINITY }
+    };
+    (coordinates, (share(0.161, h_square), share(0.322, length_square)))
 }
 
 /// Says whether `|v|` is in `2^-200 .. 2^201`, where no square and no quotient leaves the range of a double.

@@ -12,25 +12,34 @@
 //!
 //! Point lights without attenuation, no shadows. Only a light on the side that the ray comes from adds anything. Both
 //! sides, the eye's and the light's, are decided exactly, since the specular term jumps where the light sets.
+//!
+//! A colour comes with a bound of its error, which holds for vectors that are themselves known within bounds:
+//! `docs/numerics.md`, section 11, derives it.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use rt_math::exact::{difference_dot_sign, dot_sign};
-use rt_math::reflect;
+use rt_math::exact::{U, difference_dot_sign, dot_sign, dot_with_error, power_of_two, two_prod};
 
 use crate::color::clamp_channel;
 use crate::power::power;
 
-/// Bound of the error of the cosine between the directions to a light and along a normal, both of which [`unit`]
-/// rounds: a cosine beyond it has the exact sign. `6.1 * 2^-53` is proved in `docs/numerics.md`, section 11.
-pub(crate) const COSINE_ERROR: f64 = 4.0 * f64::EPSILON;
+/// The error of a vector made one long, relative to 1; `4.51 u` is proved.
+pub(crate) const UNIT_ERROR: f64 = 4.6 * U;
+/// The same of the direction from a light, whose difference is rounded as well; `6.6 u` is proved.
+pub(crate) const INCIDENT_ERROR: f64 = 7.0 * U;
+/// What rounding adds to the error of a cosine and of an alignment; `3.1 u` and `17.1 u` are proved.
+const COSINE_ROUNDING: f64 = 3.2 * U;
+const ALIGNMENT_ROUNDING: f64 = 17.5 * U;
+/// Up to here the bounds are proved for the errors of directions: `2^-7`.
+const LARGEST_ERROR: f64 = power_of_two(-7);
 
 /// How a surface answers light: the coefficients of Phong's terms.
 ///
 /// The coefficients are meant to be finite and not negative, and `shininess` finite and positive. Nothing refuses
 /// other numbers: a NaN or infinite coefficient makes the colour NaN or infinite (which [`crate::color::to_sample`]
-/// stores as 0 or as full), a negative one takes light away, and [`phong`] says what a bad shininess does.
+/// stores as 0 or as full), a negative one takes light away, and [`phong`] says what a bad shininess does. The bound of
+/// the error then has no meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// `k_a`: the share of the surface colour that is there without any light.
@@ -52,16 +61,87 @@ pub struct PointLight {
     pub color: DVec3,
 }
 
-/// Returns the colour of a surface point, seen along `direction`, in the light of `lights`.
+/// A point of a surface and how it is seen; vectors and colour may be known within bounds only.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<'a> {
+    /// Where it is, together with `offset`.
+    pub point: DVec3,
+    /// What is to be added to `point`: the sum is not rounded. It places what is far away near a center.
+    pub offset: DVec3,
+    /// The direction that leads from the eye to it, of any length; exact.
+    pub direction: DVec3,
+    /// Perpendicular to the surface, of any length and on either side.
+    pub normal: DVec3,
+    /// The surface's own colour.
+    pub surface: DVec3,
+    /// How the surface answers light.
+    pub material: &'a Material,
+    /// How far these may be from the exact ones.
+    pub errors: Errors,
+}
+
+/// Bounds of the errors of a [`SurfacePoint`]: of lengths of differences, and of a channel of the colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Of `point + offset`.
+    pub point: f64,
+    /// Of `normal`.
+    pub normal: f64,
+    /// Of each channel of `surface`.
+    pub surface: f64,
+}
+
+/// A colour, and how far each channel may be from the exact one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shaded {
+    /// The colour; channels are not clamped.
+    pub color: DVec3,
+    /// A bound of the error of each channel; infinite or NaN where nothing is known.
+    pub error: f64,
+}
+
+/// Who knows the sides of a surface where rounding leaves them open.
+pub trait Sides {
+    /// Whether the normal as given is on the side that the ray comes from, or the ray runs along the surface; `None` if
+    /// that is not known.
+    fn faces_eye(&self) -> Option<bool>;
+
+    /// On which side of the plane that touches the surface a light is; `Greater` is the side to which the normal as given
+    /// leads. `None` if that is not known.
+    fn side_of(&self, light: DVec3) -> Option<Ordering>;
+}
+
+impl<'a> SurfacePoint<'a> {
+    /// Returns the point with these vectors and this colour, all exact; [`SurfacePoint`] explains them.
+    pub fn new(point: DVec3, direction: DVec3, normal: DVec3, surface: DVec3, material: &'a Material) -> Self {
+        let (offset, errors) = (DVec3::ZERO, Errors::default());
+        Self { point, offset, direction, normal, surface, material, errors }
+    }
+}
+
+/// The vectors as given decide, if they are exact.
+impl Sides for SurfacePoint<'_> {
+    fn faces_eye(&self) -> Option<bool> {
+        (self.errors.normal == 0.0).then(|| dot_sign(self.direction, self.normal) != Some(Ordering::Greater))
+    }
+
+    fn side_of(&self, light: DVec3) -> Option<Ordering> {
+        let exact = self.errors.point == 0.0 && self.errors.normal == 0.0 && self.offset == DVec3::ZERO;
+        // No side for what is not finite.
+        exact.then(|| difference_dot_sign(light, self.point, self.normal).unwrap_or(Ordering::Equal))
+    }
+}
+
+/// Returns the colour of a surface point in the light of `lights`, and a bound of its error.
 ///
-/// `direction` leads from the eye to the point and `normal` is perpendicular to the surface; both may have any length,
-/// and the normal is turned to the side that the ray comes from. `surface` is the surface's own colour. Each light adds
-/// a diffuse and a specular term, both only if it is on the eye's side of the surface; a light in the plane of the
-/// surface or exactly at the point adds nothing. Without lights the result is `surface` itself: a flat picture.
+/// Each light adds a diffuse and a specular term, both only if it is on the side of the surface from which the ray
+/// comes; a light in the plane of the surface or exactly at the point adds nothing. Without lights the result is the
+/// surface's own colour: a flat picture.
 ///
-/// On which side of the plane through `point` the eye and each light are is exact for all finite vectors given, however
-/// far or near. The terms themselves are rounded: a light that is on the eye's side by less than rounding may have a
-/// diffuse term of 0, and none is negative.
+/// For exact vectors the sides of the eye and of each light are exact, however far or near, and the bound is at most
+/// `1e-13` of the sum of the terms for a shininess up to 32 (proved: about `40 + 2 shininess * 60` units of `2^-53`).
+/// Where the vectors are known within bounds and these leave a side open, the error is infinite: [`phong_with_sides`]
+/// asks.
 ///
 /// Channels are not clamped. A zero or non-finite direction, normal or distance to a light leaves the term out that
 /// needs it. A NaN shininess makes the specular term NaN; one of 0 or less counts as a power all the same; a specular
@@ -71,105 +151,231 @@ pub struct PointLight {
 ///
 /// ```
 /// use glam::DVec3;
-/// use rt_shade::{Material, PointLight, phong};
+/// use rt_shade::{Material, PointLight, SurfacePoint, phong};
 ///
 /// let material = Material { ambient: 0.25, diffuse: 0.5, specular: 1.0, shininess: 32.0 };
 /// let above = PointLight { position: DVec3::new(0.0, 0.0, 3.0), color: DVec3::ONE };
 /// let below = PointLight { position: DVec3::new(0.0, 0.0, -3.0), color: DVec3::ONE };
-/// let shade = |lights: &[PointLight]| {
-///     phong(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::X, &material, lights)
-/// };
-/// assert_eq!(shade(&[above]), DVec3::new(1.75, 1.0, 1.0));
-/// assert_eq!(shade(&[below]), DVec3::new(0.25, 0.0, 0.0)); // behind the surface: ambient alone
-/// assert_eq!(shade(&[]), DVec3::X); // no light at all: flat
+/// let seen = SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::X, &material);
+/// assert_eq!(phong(&seen, &[above]).color, DVec3::new(1.75, 1.0, 1.0));
+/// assert_eq!(phong(&seen, &[below]).color, DVec3::new(0.25, 0.0, 0.0)); // behind the surface: ambient alone
+/// assert_eq!(phong(&seen, &[]).color, DVec3::X); // no light at all: flat
+/// assert!(phong(&seen, &[above]).error < 1e-12);
 /// ```
-pub fn phong(
-    point: DVec3,
-    direction: DVec3,
-    normal: DVec3,
-    surface: DVec3,
-    material: &Material,
-    lights: &[PointLight],
-) -> DVec3 {
+#[must_use]
+pub fn phong(seen: &SurfacePoint, lights: &[PointLight]) -> Shaded {
+    phong_with_sides(seen, lights, seen)
+}
+
+/// [`phong`] of a point whose sides somebody else knows: asked where rounding leaves a side open.
+#[must_use]
+pub fn phong_with_sides(seen: &SurfacePoint, lights: &[PointLight], sides: &impl Sides) -> Shaded {
+    let SurfacePoint { surface, material, errors, .. } = *seen;
     if lights.is_empty() {
-        return surface;
+        return Shaded { color: surface, error: errors.surface };
     }
+    const UNKNOWN: f64 = f64::INFINITY;
     // The side is decided by the vectors as given: once they are rounded to length 1, a grazing view may change it.
-    let turn = if dot_sign(direction, normal) == Some(Ordering::Greater) { -1.0 } else { 1.0 };
-    let given_normal = turn * normal;
-    let direction = unit(direction);
-    let normal = unit(given_normal);
+    let (slope, slope_error) = slope(seen.direction, seen.normal, errors.normal);
+    let faces_eye = if slope.abs() > slope_error { Some(slope < 0.0) } else { sides.faces_eye() };
+    let turn = if faces_eye == Some(false) { -1.0 } else { 1.0 };
+    let direction = unit(seen.direction).vector;
+    let normal = unit(turn * seen.normal);
+    let normal_error = relative(errors.normal, normal.inverse) + UNIT_ERROR;
+    let point_error = errors.point + 1.01 * U * norm(seen.offset);
 
     let mut color = material.ambient * surface;
+    let mut error = if faces_eye.is_some() { 0.0 } else { UNKNOWN };
+    let mut adds = false;
     for light in lights {
-        let incident = unit(towards(light.position, point)); // L
-        let cosine = (-incident).dot(normal);
-        // NaN goes the exact way too, and is on no side there.
-        let lit =
-            if cosine.abs() > COSINE_ERROR { cosine > 0.0 } else { is_above(light.position, point, given_normal) };
+        let incident = unit(towards(light.position, seen)); // L
+        let incident_error = relative(point_error, incident.inverse) + INCIDENT_ERROR;
+        let cosine = (-incident.vector).dot(normal.vector);
+        let cosine_error = cosine_error(incident_error, normal_error);
+        // NaN goes the exact way too.
+        let lit = if cosine.abs() > cosine_error {
+            cosine > 0.0
+        } else {
+            let above = if turn > 0.0 { Ordering::Greater } else { Ordering::Less };
+            match sides.side_of(light.position) {
+                Some(side) => side == above,
+                None => {
+                    error = UNKNOWN;
+                    cosine > 0.0
+                }
+            }
+        };
         if lit {
+            // What a black surface adds is nothing, exactly.
+            adds |= material.diffuse != 0.0 || material.specular != 0.0;
             color += material.diffuse * clamp_channel(cosine) * surface * light.color;
+            let brightest_light = brightest(light.color);
+            let scattered = diffuse_error(brightest(surface), errors.surface, cosine_error);
+            error += material.diffuse * brightest_light * scattered;
             // Most surfaces are matt: no mirrored term, no power.
             if material.specular != 0.0 {
-                let alignment = clamp_channel((-direction).dot(reflect(incident, normal)));
-                color += material.specular * power(alignment, material.shininess) * light.color;
+                let alignment = alignment(direction, incident.vector, normal.vector, cosine);
+                let highlight = power(clamp_channel(alignment), material.shininess);
+                color += material.specular * highlight * light.color;
+                let alignment_error = alignment_error(incident_error, normal_error);
+                let power_error = power_error(alignment, alignment_error, highlight, material.shininess);
+                error += material.specular * brightest_light * power_error;
             }
         }
     }
-    color
+    let rounding = if adds { sum_rounding(lights.len()) * brightest(color) } else { product_rounding(seen) };
+    Shaded { color, error: 1.01 * (error + rounding + material.ambient * errors.surface) }
 }
 
-/// Returns whether `light` is on the side of the plane through `point` to which `normal` leads, by the vectors as
-/// given.
-#[cold]
-#[inline(never)]
-fn is_above(light: DVec3, point: DVec3, normal: DVec3) -> bool {
-    difference_dot_sign(light, point, normal) == Some(Ordering::Greater)
+/// `<D|N>` and a bound of its error.
+#[inline(always)]
+pub(crate) fn slope(direction: DVec3, normal: DVec3, normal_error: f64) -> (f64, f64) {
+    let (slope, rounding) = dot_with_error(direction, normal);
+    (slope, rounding + 1.01 * normal_error * norm(direction))
 }
 
-/// Returns the vector of length 1 in the same direction, each component within 4 ulp (tested); zero stays zero, and a
-/// vector that is not finite has no direction: NaN.
+/// An error relative to a length, as the error of a direction; an exact vector has none, whatever its length.
+#[inline(always)]
+pub(crate) fn relative(error: f64, inverse_length: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { 1.01 * error * inverse_length }
+}
+
+/// The error of the cosine between two directions with these errors; infinite beyond what is proved.
+#[inline(always)]
+pub(crate) fn cosine_error(incident: f64, normal: f64) -> f64 {
+    let error = 1.02 * (incident + normal) + COSINE_ROUNDING;
+    if incident.max(normal) <= LARGEST_ERROR { error } else { f64::INFINITY }
+}
+
+/// `<-D | L - 2 <L|N> N>`, with `cosine` for `<-L|N>`.
+#[inline(always)]
+pub(crate) fn alignment(direction: DVec3, incident: DVec3, normal: DVec3, cosine: f64) -> f64 {
+    (-direction).dot(incident + 2.0 * cosine * normal)
+}
+
+/// The error of [`alignment`], of directions with these errors.
+#[inline(always)]
+pub(crate) fn alignment_error(incident: f64, normal: f64) -> f64 {
+    1.05 * (incident + 4.0 * normal) + ALIGNMENT_ROUNDING
+}
+
+/// The error of `power`, the `shininess`-th power of an alignment with an error, clamped.
+#[inline(always)]
+pub(crate) fn power_error(alignment: f64, error: f64, power: f64, shininess: f64) -> f64 {
+    /// What a power may lose where it is subnormal.
+    const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+    let growth = shininess * error / (alignment - error);
+    // (1 + e/x)^s - 1 <= exp(s e / x) - 1, and below likewise
+    let near = (1.05 * growth + 2.1 * U) * power + UNDERFLOW;
+    // Both powers lie between 0 and that of the larger, which is at most the larger itself.
+    let wide = if shininess >= 1.0 { 1.01 * (alignment.abs() + error) } else { f64::INFINITY };
+    let bound = if (alignment > error) & (growth <= 1.0 / 32.0) { near } else { wide };
+    // Surely turned away: no highlight.
+    if alignment < -error { 0.0 } else { bound }
+}
+
+/// The error of a diffuse term before its products with the coefficient and the light: the cosine of a surface of this
+/// brightness, times it.
+#[inline(always)]
+pub(crate) fn diffuse_error(brightest_surface: f64, surface_error: f64, cosine_error: f64) -> f64 {
+    brightest_surface * (cosine_error + 3.1 * U) + surface_error
+}
+
+/// The largest channel.
+#[inline(always)]
+pub(crate) fn brightest(color: DVec3) -> f64 {
+    let larger = |x: f64, y: f64| if x > y { x } else { y };
+    larger(color.x, larger(color.y, color.z))
+}
+
+/// The rounding of a sum of terms, relative to it: one addition a term, and the three products of a specular one.
+#[inline(always)]
+pub(crate) fn sum_rounding(lights: usize) -> f64 {
+    (2 * lights + 5) as f64 * U
+}
+
+/// The rounding of the ambient term alone: exactly what the products lose.
+fn product_rounding(seen: &SurfacePoint) -> f64 {
+    let ambient = seen.material.ambient;
+    seen.surface.to_array().into_iter().fold(0.0, |most: f64, channel| {
+        let lost = two_prod::<false>(ambient, channel).1.abs();
+        // Out of the range of exact products.
+        let small = (ambient * channel).abs() < power_of_two(-900) && ambient != 0.0 && channel != 0.0;
+        most.max(if small { power_of_two(-900) } else { lost })
+    })
+}
+
+/// The sum of the magnitudes of the components: at least the length.
+#[inline(always)]
+pub(crate) fn norm(v: DVec3) -> f64 {
+    (v.x.abs() + v.y.abs()) + v.z.abs()
+}
+
+/// A vector of length 1, and the reciprocal of the length that it had.
+#[derive(Clone, Copy)]
+pub(crate) struct Unit {
+    pub(crate) vector: DVec3,
+    pub(crate) inverse: f64,
+}
+
+/// Returns the vector of length 1 in the same direction, within [`UNIT_ERROR`]; zero stays zero, and a vector that is
+/// not finite has no direction: NaN.
 #[inline]
-fn unit(v: DVec3) -> DVec3 {
+fn unit(v: DVec3) -> Unit {
     let (unit, ordinary) = ordinary_unit(v);
     if ordinary { unit } else { unit_scaled(v) }
 }
 
 /// Returns what [`unit`] returns, and whether it is that: `false` for lengths out of the ordinary.
 #[inline(always)]
-pub(crate) fn ordinary_unit(v: DVec3) -> (DVec3, bool) {
+pub(crate) fn ordinary_unit(v: DVec3) -> (Unit, bool) {
     let length_squared = v.length_squared();
+    let inverse = 1.0 / length_squared.sqrt();
     // Within these limits no square that counts has left the range of f64.
-    (v * (1.0 / length_squared.sqrt()), (1e-200..1e200).contains(&length_squared))
+    (Unit { vector: v * inverse, inverse }, (1e-200..1e200).contains(&length_squared))
 }
 
 /// [`unit`] for what is not ordinary.
 #[cold]
-fn unit_scaled(v: DVec3) -> DVec3 {
+fn unit_scaled(v: DVec3) -> Unit {
     if v == DVec3::ZERO {
-        return v;
+        return Unit { vector: v, inverse: f64::INFINITY };
     }
     if !v.is_finite() {
-        return DVec3::NAN;
+        return Unit { vector: DVec3::NAN, inverse: f64::NAN };
     }
     // The longest component lies in 2^-474 .. 2^424 then, and its square in the range of f64.
-    let v = v * if v.abs().max_element() < 1.0 { 2f64.powi(600) } else { 2f64.powi(-600) };
-    v * (1.0 / v.length())
+    let factor = 2f64.powi(if v.abs().max_element() < 1.0 { 600 } else { -600 });
+    let scaled = v * factor;
+    let inverse = 1.0 / scaled.length();
+    Unit { vector: scaled * inverse, inverse: inverse * factor }
 }
 
-/// Returns a vector in the direction from `from` to `to`; zero only if they are the same point.
-fn towards(from: DVec3, to: DVec3) -> DVec3 {
-    let difference = to - from;
-    // Only the sum of two huge numbers overflows, and those can be halved without loss.
-    if difference.is_finite() { difference } else { 0.5 * to - 0.5 * from }
+/// Returns a vector in the direction from a light to a point; zero only if they are the same point.
+fn towards(light: DVec3, seen: &SurfacePoint) -> DVec3 {
+    let difference = seen.point - light + seen.offset;
+    // Only the sum of huge numbers overflows, and those can be made smaller without loss.
+    if difference.is_finite() { difference } else { 0.25 * seen.point - 0.25 * light + 0.25 * seen.offset }
 }
 
 #[cfg(test)]
 mod tests {
-    use oracle::{Random, cases, dot, sign, sub, vector};
+    use oracle::{Big, Lamp, Random, cases, dot, exact, sign, sub, vector};
     use proptest::prelude::*;
 
     use super::*;
+
+    /// The colour of a point, all vectors exact.
+    fn color_of(
+        point: DVec3,
+        direction: DVec3,
+        normal: DVec3,
+        surface: DVec3,
+        material: &Material,
+        lights: &[PointLight],
+    ) -> DVec3 {
+        phong(&SurfacePoint::new(point, direction, normal, surface, material), lights).color
+    }
 
     const SHINY: Material = Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
 
@@ -205,7 +411,7 @@ mod tests {
             prop_assume!((p - l).length() > 0.01);
             let surface = DVec3::new(0.9, 0.5, 0.1);
             let light = lamp(l);
-            let color = phong(p, d, n, surface, &SHINY, &[light]);
+            let color = color_of(p, d, n, surface, &SHINY, &[light]);
             let expected = plain_phong(p, d, n, &light);
             // A rounding error may decide whether a light that grazes the surface counts: then both terms are tiny,
             // or the mirrored term is not; skip the 1e-12 around it.
@@ -216,7 +422,7 @@ mod tests {
 
         #[test]
         fn lights_add_up(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector(), m in any_vector()) {
-            let shade = |lights: &[PointLight]| phong(p, d, n, DVec3::ONE, &SHINY, lights);
+            let shade = |lights: &[PointLight]| color_of(p, d, n, DVec3::ONE, &SHINY, lights);
             let ambient = DVec3::splat(SHINY.ambient);
             let sum = shade(&[lamp(l)]) + shade(&[lamp(m)]) - ambient;
             prop_assert!((shade(&[lamp(l), lamp(m)]) - sum).length() < 1e-14);
@@ -224,14 +430,14 @@ mod tests {
 
         #[test]
         fn both_sides_of_a_surface_are_shaded_alike(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector()) {
-            let shade = |normal| phong(p, d, normal, DVec3::ONE, &SHINY, &[lamp(l)]);
+            let shade = |normal| color_of(p, d, normal, DVec3::ONE, &SHINY, &[lamp(l)]);
             prop_assume!(d.dot(n) != 0.0);
             prop_assert_eq!(shade(n), shade(-n));
         }
 
         #[test]
         fn lengths_do_not_matter(p in any_vector(), d in any_vector(), n in any_vector(), l in any_vector(), e in -900..900, f in -900..900) {
-            let shade = |d, n| phong(p, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
+            let shade = |d, n| color_of(p, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
             let (long_d, long_n) = (d * 2f64.powi(e), n * 2f64.powi(f));
             prop_assert!((shade(d, n) - shade(long_d, long_n)).length() < 1e-13);
         }
@@ -240,7 +446,7 @@ mod tests {
         fn a_light_behind_the_surface_adds_nothing(d in any_vector(), n in any_vector(), l in any_vector()) {
             // Eye and light on different sides of the plane through the origin.
             prop_assume!(d.dot(n) * l.dot(n) > 1e-9);
-            let color = phong(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
+            let color = color_of(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
             prop_assert_eq!(color, DVec3::splat(SHINY.ambient));
         }
 
@@ -248,9 +454,9 @@ mod tests {
         fn the_highlight_is_where_the_mirrored_eye_meets_the_light(n in any_vector(), d in any_vector(), s in 1.0f64..1000.0) {
             prop_assume!(d.dot(n).abs() > 1e-3);
             let material = Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: s };
-            let towards_light = reflect(d, n);
+            let towards_light = rt_math::reflect(d, n);
             let light = PointLight { position: 3.0 * towards_light, color: DVec3::ONE };
-            let highlight = phong(DVec3::ZERO, d, n, DVec3::ZERO, &material, &[light]);
+            let highlight = color_of(DVec3::ZERO, d, n, DVec3::ZERO, &material, &[light]);
             // The alignment is 1 within some roundings; its power is worse by the exponent.
             prop_assert!((highlight.x - 1.0).abs() < 20.0 * s * f64::EPSILON, "{}", highlight);
         }
@@ -259,7 +465,7 @@ mod tests {
         fn a_unit_vector_has_length_one(v in prop::array::uniform3(any::<u64>())) {
             let v = DVec3::from_array(v.map(f64::from_bits));
             prop_assume!(v.is_finite() && v != DVec3::ZERO);
-            let unit = unit(v);
+            let unit = unit(v).vector;
             prop_assert!((unit.length() - 1.0).abs() < 4.0 * f64::EPSILON, "{:?} gave {:?}", v, unit);
             prop_assert!(unit.dot(v.signum()) > 0.0, "{:?} gave {:?}", v, unit);
         }
@@ -274,9 +480,9 @@ mod tests {
             // Perpendicular within the rounding of z.
             let d = DVec3::new(x, y, -(x * n.x + y * n.y) / n.z);
             let away = sign(&dot(&vector(d), &vector(n))) == Ordering::Greater;
-            rounding_would_err += usize::from((unit(d).dot(unit(n)) > 0.0) != away);
+            rounding_would_err += usize::from((unit(d).vector.dot(unit(n).vector) > 0.0) != away);
             let lit_from = |position| {
-                phong(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(position)]) != DVec3::splat(SHINY.ambient)
+                color_of(DVec3::ZERO, d, n, DVec3::ONE, &SHINY, &[lamp(position)]) != DVec3::splat(SHINY.ambient)
             };
             assert_eq!([lit_from(-n), lit_from(n)], [away, !away], "direction {d:?}, normal {n:?}");
         }
@@ -286,24 +492,27 @@ mod tests {
     /// Checks the side of a light near the plane through `point`, seen from the side that `normal` leads to and from
     /// the other; returns whether the rounded cosine would put it on another side.
     fn check_side(point: DVec3, light: DVec3, normal: DVec3) -> bool {
-        use crate::phong_batch::{SurfacePoint, phong_batch};
+        use crate::phong_batch;
         let side = sign(&dot(&sub(&vector(light), &vector(point)), &vector(normal)));
         // The mirrored light runs nearly into the eye: where it counts, the colour is about 1, and 0 elsewhere.
         let material = &Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: 1.0 };
-        let incident = unit(towards(light, point));
-        for (up, above) in [(unit(normal), Ordering::Greater), (-unit(normal), Ordering::Less)] {
-            let seen = SurfacePoint { point, direction: -incident - 0.1 * up, normal, surface: DVec3::ONE, material };
+        let incident = unit(towards(light, &SurfacePoint::new(point, normal, normal, DVec3::ONE, material))).vector;
+        let up = unit(normal).vector;
+        for (up, above) in [(up, Ordering::Greater), (-up, Ordering::Less)] {
+            let seen = SurfacePoint::new(point, -incident - 0.1 * up, normal, DVec3::ONE, material);
             let lights = [PointLight { position: light, color: DVec3::ONE }];
-            let color = seen.shaded(&lights).x;
+            let shaded = phong(&seen, &lights);
+            assert!(shaded.error < 1e-13, "{shaded:?}");
+            let color = shaded.color.x;
             assert!(
                 if side == above { color > 0.9 } else { color == 0.0 },
                 "{light:?} is {side:?} of {normal:?} at {point:?}, and the colour {color}"
             );
-            let mut colors = [DVec3::NAN; 3];
+            let mut colors = [Shaded { color: DVec3::NAN, error: f64::NAN }; 3];
             phong_batch(&[seen; 3], &lights, &mut colors);
-            assert_eq!(colors, [DVec3::splat(color); 3], "together");
+            assert_eq!(colors.map(|shaded| shaded.color), [DVec3::splat(color); 3], "together");
         }
-        (-incident).dot(unit(normal)).partial_cmp(&0.0) != Some(side)
+        (-incident).dot(unit(normal).vector).partial_cmp(&0.0) != Some(side)
     }
 
     /// The number of random cases: ten thousand, or a million with the environment variable `RT_LONG` set.
@@ -380,7 +589,7 @@ mod tests {
             let (normal, across, point) = (random.point(), random.point(), random.point());
             let z = -(across.x * normal.x + across.y * normal.y) / normal.z;
             let light = PointLight { position: point + DVec3 { z, ..across }, color: DVec3::ONE };
-            let color = phong(point, -normal, normal, DVec3::ONE, &material, &[light]);
+            let color = color_of(point, -normal, normal, DVec3::ONE, &material, &[light]);
             assert!((0.0..1e-9).contains(&color.x), "{color} from {light:?} at {point:?}, {normal:?}");
         }
     }
@@ -388,13 +597,13 @@ mod tests {
     #[test]
     fn without_lights_the_surface_is_flat() {
         let surface = DVec3::new(0.3, 0.6, 0.9);
-        assert_eq!(phong(DVec3::ONE, DVec3::NEG_Z, DVec3::Z, surface, &SHINY, &[]), surface);
+        assert_eq!(color_of(DVec3::ONE, DVec3::NEG_Z, DVec3::Z, surface, &SHINY, &[]), surface);
     }
 
     #[test]
     fn a_light_at_the_point_adds_nothing() {
         for point in [DVec3::ZERO, DVec3::ONE, DVec3::splat(1e300)] {
-            let color = phong(point, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(point)]);
+            let color = color_of(point, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(point)]);
             assert_eq!(color, DVec3::splat(SHINY.ambient), "at {point}");
         }
     }
@@ -402,7 +611,7 @@ mod tests {
     #[test]
     fn the_nearest_and_the_farthest_light_are_lights() {
         let shade =
-            |point: DVec3, position| phong(point, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(position)]);
+            |point: DVec3, position| color_of(point, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(position)]);
         let expected = shade(DVec3::ZERO, DVec3::Z);
         for height in [f64::from_bits(1), 1e-310, 1e-160, 1e160, f64::MAX] {
             assert_eq!(shade(DVec3::ZERO, height * DVec3::Z), expected, "height {height:e}");
@@ -412,14 +621,14 @@ mod tests {
 
     #[test]
     fn a_tangent_light_adds_nothing() {
-        let color = phong(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(DVec3::X)]);
+        let color = color_of(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::ONE, &SHINY, &[lamp(DVec3::X)]);
         assert_eq!(color, DVec3::splat(SHINY.ambient));
     }
 
     #[test]
     fn bad_numbers_do_no_harm() {
         let ambient = DVec3::splat(SHINY.ambient);
-        let shade = |p, d, n, l| phong(p, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
+        let shade = |p, d, n, l| color_of(p, d, n, DVec3::ONE, &SHINY, &[lamp(l)]);
         for bad in [f64::NAN, f64::INFINITY] {
             let bad = DVec3::new(bad, 0.0, 1.0);
             assert_eq!(shade(bad, DVec3::NEG_Z, DVec3::Z, DVec3::Z), ambient, "point");
@@ -431,7 +640,92 @@ mod tests {
         }
         assert_eq!(shade(DVec3::ZERO, DVec3::NEG_Z, DVec3::ZERO, DVec3::Z), ambient, "zero normal");
         let nan = Material { shininess: f64::NAN, ..SHINY };
-        let color = phong(DVec3::ZERO, DVec3::new(0.1, 0.0, -1.0), DVec3::Z, DVec3::ONE, &nan, &[lamp(DVec3::Z)]);
+        let color = color_of(DVec3::ZERO, DVec3::new(0.1, 0.0, -1.0), DVec3::Z, DVec3::ONE, &nan, &[lamp(DVec3::Z)]);
         assert!(color.is_nan(), "a NaN shininess shows: {color}");
+    }
+
+    /// How far a channel is from the exact colour of the point with these exact vectors.
+    fn distance(
+        shaded: &Shaded,
+        vectors: [&[Big; 3]; 3],
+        surface: DVec3,
+        material: &Material,
+        light: &PointLight,
+    ) -> f64 {
+        let [point, direction, normal] = vectors;
+        let coefficients = [material.ambient, material.diffuse, material.specular];
+        let lamp = Lamp { position: vector(light.position), color: vector(light.color) };
+        let truth =
+            oracle::shade(point, direction, normal, &vector(surface), coefficients, material.shininess, &[lamp]);
+        let error = |i: usize| (exact(shaded.color[i]) - &truth[i]).to_f64().value().abs();
+        error(0).max(error(1)).max(error(2))
+    }
+
+    #[test]
+    fn the_error_is_within_its_bound_and_the_bound_is_small() {
+        let mut random = Random::new(11);
+        let (mut sharpest, mut largest) = (0.0f64, 0.0f64);
+        for i in 0..cases(LONG) {
+            let [point, direction, normal] = [0; 3].map(|_| random.point());
+            let light = lamp(4.0 * random.point());
+            let material = Material { shininess: f64::from(1 + i as u32 % 32), ..SHINY };
+            let surface = random.point().abs();
+            let shaded = phong(&SurfacePoint::new(point, direction, normal, surface, &material), &[light]);
+            let vectors = [&vector(point), &vector(direction), &vector(normal)];
+            let error = distance(&shaded, vectors, surface, &material, &light);
+            assert!(error <= shaded.error, "{shaded:?} is {error:e} off");
+            let sum = shaded.color.max_element();
+            largest = largest.max(shaded.error / sum);
+            sharpest = sharpest.max(error / shaded.error);
+        }
+        assert!(largest < 1e-12 && sharpest > 0.01, "{largest:e} {sharpest}");
+    }
+
+    #[test]
+    fn vectors_known_within_bounds_have_their_colour_within_one() {
+        let mut random = Random::new(12);
+        let mut open = 0;
+        for i in 0..cases(LONG) {
+            let [point, direction, normal] = [0; 3].map(|_| random.point());
+            let light = lamp(point + random.power(-12..2) * random.point());
+            let material = Material { shininess: [1.0, 2.0, 32.0, 1000.0][i % 4], ..SHINY };
+            let (surface, size) = (random.point().abs(), random.power(-50..-8));
+            // Within `size` of the exact vectors, in pieces and out of them.
+            let wrong = |random: &mut Random| 0.57 * size * random.point();
+            let errors = Errors { point: size, normal: size, surface: size };
+            let offset = if i % 2 == 0 { DVec3::ZERO } else { random.point() };
+            let near = point - offset;
+            let moved = near + wrong(&mut random);
+            let exact_point = [0, 1, 2].map(|axis| exact(near[axis]) + exact(offset[axis]));
+            let seen = SurfacePoint {
+                offset,
+                normal: normal + wrong(&mut random),
+                surface: surface + 0.9 * size * random.uniform(),
+                errors,
+                ..SurfacePoint::new(moved, direction, normal, surface, &material)
+            };
+            let shaded = phong(&seen, &[light]);
+            if shaded.error < f64::INFINITY {
+                let vectors = [&exact_point, &vector(direction), &vector(normal)];
+                let error = distance(&shaded, vectors, surface, &material, &light);
+                assert!(error <= shaded.error, "{seen:?} {light:?} {shaded:?} is {error:e} off");
+            } else {
+                open += 1;
+            }
+        }
+        assert!(open > 10 && open < cases(LONG) / 2, "{open}");
+    }
+
+    #[test]
+    fn the_ambient_term_alone_is_known_to_its_last_bit() {
+        let below = lamp(DVec3::NEG_Z);
+        let shade = |ambient: f64, surface: f64| {
+            let material = Material { ambient, ..SHINY };
+            phong(&SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::splat(surface), &material), &[below])
+        };
+        assert_eq!(shade(0.5, 1.0), Shaded { color: DVec3::splat(0.5), error: 0.0 });
+        let shaded = shade(0.1, 0.7);
+        let lost = (exact(0.1) * exact(0.7) - exact(shaded.color.x)).to_f64().value().abs();
+        assert!(lost <= shaded.error && shaded.error <= 1.02 * lost && lost > 0.0, "{shaded:?} {lost:e}");
     }
 }

@@ -14,6 +14,7 @@
 //! A map of a sphere closes at the sides and ends at the poles, so `u` wraps around and `v` is clamped.
 
 use glam::DVec3;
+use rt_math::exact::U;
 
 use crate::color::clamp_channel;
 
@@ -108,7 +109,7 @@ impl Texture {
         let x = wrap(u) * self.width as f64 + (self.width as f64 - 0.5);
         let y = (clamp_channel(v) * self.height as f64 - 0.5).clamp(0.0, (self.height - 1) as f64);
         let (left, top) = (whole(x), whole(y));
-        let (across, down) = (x - x.floor(), y - y.floor());
+        let (across, down) = (x - left as f64, y - top as f64);
         let (columns, rows) = ([left % self.width, (left + 1) % self.width], [top, (top + 1).min(self.height - 1)]);
         let [upper, lower] = rows.map(|row| {
             let [left, right] = columns.map(|column| self.samples_at(column, row));
@@ -120,6 +121,31 @@ impl Texture {
     /// The colour of a texel: each channel is the double nearest to its sample over `maxval`.
     pub(crate) fn color_at(&self, column: usize, row: usize) -> DVec3 {
         self.samples_at(column, row) / f64::from(self.maxval)
+    }
+
+    /// Returns what [`nearest`](Self::nearest) returns if that is the same for all coordinates in `0..=1` that are
+    /// within these errors of `u` and `v`.
+    #[must_use]
+    pub fn nearest_within(&self, (u, v): (f64, f64), (u_error, v_error): (f64, f64)) -> Option<DVec3> {
+        let (width, height) = (self.width as f64, self.height as f64);
+        let (x, y) = (u * width, v * height);
+        // The product is rounded, and so are the ends.
+        let (across, down) = ((u_error + 3.0 * U) * width, (v_error + 3.0 * U) * height);
+        // From 0 to the last column, so that nothing wraps; v ends where it ends. False for NaN.
+        let column = whole(x + across);
+        let inside = x - across >= 0.0 && x + across < width && whole(x - across) == column;
+        let [top, bottom] = [y - down, y + down].map(|end| whole(end).min(self.height - 1));
+        (inside && top == bottom).then(|| self.color_at(column, bottom))
+    }
+
+    /// Returns what [`bilinear`](Self::bilinear) returns, and a bound of its error for coordinates with these errors.
+    ///
+    /// A channel changes by at most 1 from texel to texel. `docs/numerics.md`, section 11, has the proof.
+    #[must_use]
+    pub fn bilinear_within(&self, (u, v): (f64, f64), (u_error, v_error): (f64, f64)) -> (DVec3, f64) {
+        let (width, height) = (self.width as f64, self.height as f64);
+        let error = 1.01 * (width * u_error + height * v_error) + (3.0 * width + 3.0 * height + 9.0) * U;
+        (self.bilinear(u, v), error)
     }
 
     /// The three samples of a texel, not yet divided by `maxval`.

@@ -2,7 +2,7 @@
 //! number); there is no verdict; the value is the sum of the ambient, diffuse and specular terms.
 
 use glam::DVec3;
-use rt_shade::{Material, PointLight, phong as ours};
+use rt_shade::{Material, PointLight, SurfacePoint, phong as ours};
 
 use super::method::{Answer, Method};
 use super::real::{Components, Float, dot, dvec3, normalized, power, scaled, sub, vector};
@@ -19,8 +19,8 @@ pub(crate) fn phong() -> Vec<Method<13, 1>> {
         Method::ours("ours", |case| {
             let lamp = PointLight { position: dvec3(case, 9), color: DVec3::ONE };
             let material = Material { shininess: case[12], ..MATERIAL };
-            let color = ours(dvec3(case, 0), dvec3(case, 3), dvec3(case, 6), DVec3::ONE, &material, &[lamp]);
-            Answer { verdict: 0, values: [color.x] }
+            let seen = SurfacePoint::new(dvec3(case, 0), dvec3(case, 3), dvec3(case, 6), DVec3::ONE, &material);
+            Answer { verdict: 0, values: [ours(&seen, &[lamp]).color.x] }
         }),
     ]
 }

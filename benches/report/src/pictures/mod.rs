@@ -24,7 +24,7 @@ use rt_geom::{Bvh, Hit, Ray, Sphere};
 
 use super::measure::{Effort, take_turns};
 use super::progress::progress;
-use pixels::{Samples8, as_png, paint};
+use pixels::{Samples8, as_png, paint, samples};
 pub(super) use results::{Group, Painted, Pictured};
 use textbook::Painter;
 
@@ -94,10 +94,11 @@ fn measure(name: &str, group: Group, scene: impl Fn() -> Scene, effort: Effort) 
     let double = Painter::<f64>::new(&drawn);
     let tree = Bvh::new(drawn.spheres.clone(), drawn.triangles.clone());
     let renderer = Renderer::new(scene());
-    let by = |closest: &dyn Fn(&Ray) -> Option<Hit>| paint(&view, |ray| renderer.color(ray, closest(ray)));
+    let by =
+        |closest: &dyn Fn(&Ray) -> Option<Hit>| paint(&view, |ray| renderer.sample(ray, closest(ray), 255).map(eight));
     let methods: [(&str, bool, Draw); 5] = [
-        ("textbook f32", false, Box::new(|| paint(&view, |ray| single.color(ray)))),
-        ("textbook", false, Box::new(|| paint(&view, |ray| double.color(ray)))),
+        ("textbook f32", false, Box::new(|| paint(&view, |ray| samples(single.color(ray))))),
+        ("textbook", false, Box::new(|| paint(&view, |ray| samples(double.color(ray))))),
         ("ours, plain loop", true, Box::new(|| by(&|ray| plain(&drawn, ray)))),
         ("ours, tree", true, Box::new(|| by(&|ray| tree.closest(ray, AHEAD)))),
         ("ours, batch", true, Box::new(|| batch(&renderer, &view))),
@@ -134,7 +135,12 @@ fn plain(scene: &Scene, ray: &Ray) -> Option<Hit> {
 /// Draws as the program does.
 fn batch(renderer: &Renderer, view: &View) -> Samples8 {
     let rows = renderer.rows(view, 0..view.size().height, 255, &|_| ());
-    rows.samples.into_iter().map(|sample| u8::try_from(sample).expect("a sample is at most maxval")).collect()
+    rows.samples.into_iter().map(eight).collect()
+}
+
+/// A sample of eight bits.
+fn eight(sample: u16) -> u8 {
+    u8::try_from(sample).expect("a sample is at most maxval")
 }
 
 #[cfg(test)]

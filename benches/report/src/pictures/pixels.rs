@@ -10,10 +10,10 @@ use rt_shade::color::{clamp, to_sample};
 pub(super) type Samples8 = Vec<u8>;
 
 /// Draws a picture ray by ray.
-pub(super) fn paint(view: &View, color: impl Fn(&Ray) -> DVec3) -> Samples8 {
+pub(super) fn paint(view: &View, samples: impl Fn(&Ray) -> [u8; 3]) -> Samples8 {
     let Size { width, height, .. } = view.size();
     let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-    pixels.flat_map(|(column, row)| samples(color(&view.ray(column, row)))).collect()
+    pixels.flat_map(|(column, row)| samples(&view.ray(column, row))).collect()
 }
 
 /// The three samples of a pixel.
