@@ -21,19 +21,38 @@ const UNDERFLOW: f64 = power_of_two(-500);
 /// Cold stages need no FMA.
 type ColdDoubleDouble = DoubleDouble<false>;
 
+/// Asks the smallest exact arithmetic that holds the numbers: the question is compiled for each.
+macro_rules! ask {
+    ($triangle:ident, $ray:ident, |$volumes:ident| $question:expr) => {
+        if let Some($volumes) = FixedVolumes::<1, 2, 3>::new($triangle, $ray) {
+            decided(Stage::Fixed);
+            $question
+        } else {
+            ask_wider($triangle, $ray, |$volumes| $question)
+        }
+    };
+}
+
 /// Returns the hit's `t` if it is in the range; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn closest(triangle: &Triangle, ray: &Ray, within: Range<f64>) -> Option<f64> {
-    let t = ask(triangle, ray, |volumes| verdict(volumes.signs())?.is_hit().then(|| volumes.t()))?;
+    let t = ask!(triangle, ray, |volumes| volumes.is_hit().then(|| volumes.t()))?;
     holds(&within, t).then_some(t)
+}
+
+/// Returns the correctly rounded `t` where a line that surely crosses the triangle does; slow path, always decides.
+#[cold]
+#[inline(never)]
+pub(super) fn crossing_t(triangle: &Triangle, ray: &Ray) -> f64 {
+    ask!(triangle, ray, |volumes| volumes.t())
 }
 
 /// Returns how the whole line meets the triangle; slow path, always decides.
 #[cold]
 #[inline(never)]
 pub(super) fn line_verdict(triangle: &Triangle, ray: &Ray) -> Verdict {
-    ask(triangle, ray, |volumes| verdict(volumes.signs()))
+    ask!(triangle, ray, |volumes| verdict(volumes.signs()))
         .unwrap_or_else(|| if is_degenerate(triangle) { Verdict::Degenerate } else { Verdict::Parallel })
 }
 
@@ -41,16 +60,16 @@ pub(super) fn line_verdict(triangle: &Triangle, ray: &Ray) -> Verdict {
 #[cold]
 #[inline(never)]
 pub(super) fn exact_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
-    ask(triangle, ray, |volumes| verdict(volumes.signs())?.is_hit().then(|| volumes.weights()))
+    ask!(triangle, ray, |volumes| volumes.is_hit().then(|| volumes.weights()))
 }
 
 /// Returns the correctly rounded `t` if it is in the range, and the weights.
 #[cold]
 #[inline(never)]
 pub(super) fn closest_with_weights(triangle: &Triangle, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
-    ask(triangle, ray, |volumes| {
-        let t = verdict(volumes.signs())?.is_hit().then(|| volumes.t())?;
-        holds(&within, t).then(|| (t, volumes.weights()))
+    ask!(triangle, ray, |volumes| {
+        let t = volumes.is_hit().then(|| volumes.t()).filter(|&t| holds(&within, t));
+        t.map(|t| (t, volumes.weights()))
     })
 }
 
@@ -58,7 +77,7 @@ pub(super) fn closest_with_weights(triangle: &Triangle, ray: &Ray, within: Range
 #[cold]
 #[inline(never)]
 pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
-    ask(triangle, ray, |volumes| {
+    ask!(triangle, ray, |volumes| {
         let (height, [_, _, _, slope]) = (volumes.height_sign(), volumes.signs());
         // Height zero: the origin is in the plane, or there is no plane. Slope zero: two of the volumes have opposite
         // signs.
@@ -74,7 +93,7 @@ pub(crate) fn slope_sign(triangle: &Triangle, ray: &Ray) -> Ordering {
     if triangle.edge < FARTHEST && slope.abs() > (18.0 * U * triangle.edge) * triangle.edge * ray.reach() {
         return slope.total_cmp(&0.0);
     }
-    ask(triangle, ray, |volumes| volumes.signs()[3])
+    normal_sign(triangle, DVec3::ZERO, ray.direction())
 }
 
 /// The sign of `(a - o) . (b - a) x (c - a)`, for the ray's origin `o`: `Less` where it lies on the side that the
@@ -87,11 +106,41 @@ pub(crate) fn height_sign(triangle: &Triangle, ray: &Ray) -> Ordering {
     if triangle.edge + size < FARTHEST && height.abs() > (18.0 * U * triangle.edge) * size + UNDERFLOW {
         return height.total_cmp(&0.0);
     }
-    ask(triangle, ray, |volumes| volumes.height_sign())
+    normal_sign(triangle, ray.origin(), a)
 }
 
-/// What exact arithmetic, of whatever size, knows of a ray and a triangle.
+/// The sign of `(to - from) . (b - a) x (c - a)`; always decides.
+#[cold]
+#[inline(never)]
+fn normal_sign(triangle: &Triangle, from: DVec3, to: DVec3) -> Ordering {
+    fixed_normal_sign::<1, 2, 3>(triangle, from, to)
+        .or_else(|| fixed_normal_sign::<2, 4, 6>(triangle, from, to))
+        .unwrap_or_else(|| {
+            let [a, b, c] = triangle.vertices;
+            let normal = cross(&difference::<VolumeInteger>(b, a), &difference(c, a));
+            dot(&normal, &difference(to, from)).sign()
+        })
+}
+
+fn fixed_normal_sign<const N: usize, const A: usize, const V: usize>(
+    triangle: &Triangle,
+    from: DVec3,
+    to: DVec3,
+) -> Option<Ordering> {
+    let [a, b, c] = triangle.vertices;
+    let window = Window::<N>::around([a, b, c, from, to].map(|point| point.to_array()).as_flattened())?;
+    let [a, b, c, from, to] = [a, b, c, from, to].map(|point| window.vector(point));
+    let normal: [Fixed<A>; 3] = cross(&minus(&b, &a), &minus(&c, &a));
+    Some(dot::<_, _, Fixed<V>>(&normal, &minus(&to, &from)).sign())
+}
+
+/// What exact arithmetic, of whatever size, knows of a ray and a triangle. All signs may be the opposite ones together.
 trait Volumes {
+    /// Whether the line meets the triangle: [`verdict`] of the signs is a hit.
+    fn is_hit(&self) -> bool {
+        verdict(self.signs()).is_some_and(Verdict::is_hit)
+    }
+
     /// The signs of the three volumes and of their sum.
     fn signs(&self) -> [Ordering; 4];
 
@@ -108,13 +157,11 @@ trait Volumes {
     fn weights(&self) -> [f64; 3];
 }
 
-/// Asks the smallest exact arithmetic that holds the numbers.
-#[inline(always)]
-fn ask<R>(triangle: &Triangle, ray: &Ray, question: impl FnOnce(&dyn Volumes) -> R) -> R {
-    if let Some(volumes) = FixedVolumes::<1, 2, 3>::new(triangle, ray) {
-        decided(Stage::Fixed);
-        question(&volumes)
-    } else if let Some(volumes) = FixedVolumes::<2, 4, 6>::new(triangle, ray) {
+/// Asks what follows where no window of one limb holds the numbers.
+#[cold]
+#[inline(never)]
+fn ask_wider<R>(triangle: &Triangle, ray: &Ray, question: impl FnOnce(&dyn Volumes) -> R) -> R {
+    if let Some(volumes) = FixedVolumes::<2, 4, 6>::new(triangle, ray) {
         decided(Stage::Fixed);
         question(&volumes)
     } else {
@@ -160,14 +207,18 @@ fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> 
 }
 
 /// The volumes in fixed-point numbers, where all points lie in one window and the direction in another: coordinates of
-/// `N` limbs, areas of `A = 2 N`, volumes of `V = 3 N`.
+/// `N` limbs, areas of `A = 2 N`, volumes of `V = 3 N`. By the formulas of Möller and Trumbore, so all volumes are
+/// negative.
 struct FixedVolumes<const N: usize, const A: usize, const V: usize> {
-    /// The first vertex relative to the origin of the ray.
-    vertex: [Fixed<N>; 3],
-    /// `b x c`, `c x a`, `a x b`.
-    planes: [[Fixed<A>; 3]; 3],
-    /// `u`, `v`, `w`.
-    volumes: [Fixed<V>; 3],
+    /// The edges from the first vertex, and the origin of the ray relative to it.
+    e: [Fixed<N>; 3],
+    f: [Fixed<N>; 3],
+    s: [Fixed<N>; 3],
+    d: [Fixed<N>; 3],
+    /// `e . (d x f)`, the sum of the volumes.
+    sum: Fixed<V>,
+    /// `d x f`
+    p: [Fixed<A>; 3],
     /// The height over the sum of the volumes times `2^exponent` is `t`.
     exponent: i32,
 }
@@ -175,50 +226,81 @@ struct FixedVolumes<const N: usize, const A: usize, const V: usize> {
 impl<const N: usize, const A: usize, const V: usize> FixedVolumes<N, A, V> {
     #[inline(always)]
     fn new(triangle: &Triangle, ray: &Ray) -> Option<Self> {
-        let points = [ray.origin(), triangle.vertices[0], triangle.vertices[1], triangle.vertices[2]];
-        let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
+        let ([a, b, c], o) = (triangle.vertices, ray.origin());
+        let window = Window::<N>::around(&[o.x, o.y, o.z, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z])?;
         let direction_window = Window::<N>::around(&ray.direction().to_array())?;
-        let [o, a, b, c] = points.map(|point| window.vector(point));
-        let [a, b, c] = [a, b, c].map(|point| minus(&point, &o));
-        let planes: [[Fixed<A>; 3]; 3] = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+        let a = window.vector(a);
+        let (e, f, s) = (minus(&window.vector(b), &a), minus(&window.vector(c), &a), minus(&window.vector(o), &a));
         let d = direction_window.vector(ray.direction());
-        let volumes = [dot(&planes[0], &d), dot(&planes[1], &d), dot(&planes[2], &d)];
-        Some(Self { vertex: a, planes, volumes, exponent: window.exponent() - direction_window.exponent() })
+        let p = cross(&d, &f);
+        let sum = dot(&p, &e);
+        Some(Self { e, f, s, d, sum, p, exponent: window.exponent() - direction_window.exponent() })
     }
 
+    /// `s x e`
     #[inline(always)]
-    fn sum(&self) -> Fixed<V> {
-        self.volumes[0] + self.volumes[1] + self.volumes[2]
+    fn q(&self) -> [Fixed<A>; 3] {
+        cross(&self.s, &self.e)
+    }
+
+    /// `u`, `v`, `w`.
+    #[inline(always)]
+    fn volumes(&self) -> [Fixed<V>; 3] {
+        let (v, w): (Fixed<V>, Fixed<V>) = (dot(&self.p, &self.s), dot(&self.q(), &self.d));
+        [self.sum - v - w, v, w]
     }
 
     #[inline(always)]
     fn height(&self) -> Fixed<V> {
-        dot(&self.planes[0], &self.vertex)
+        dot(&self.q(), &self.f)
     }
 }
 
 impl<const N: usize, const A: usize, const V: usize> Volumes for FixedVolumes<N, A, V> {
+    #[inline(always)]
+    fn is_hit(&self) -> bool {
+        let sum = self.sum.sign();
+        if sum == Ordering::Equal {
+            return false;
+        }
+        let [u, v, w] = self.volumes();
+        let opposite = sum.reverse();
+        (u.sign() != opposite) & (v.sign() != opposite) & (w.sign() != opposite)
+    }
+
+    #[inline(always)]
     fn signs(&self) -> [Ordering; 4] {
-        let [u, v, w] = &self.volumes;
-        [u.sign(), v.sign(), w.sign(), self.sum().sign()]
+        let [u, v, w] = self.volumes();
+        [u.sign(), v.sign(), w.sign(), self.sum.sign()]
     }
 
     fn turned_signs(&self) -> [Ordering; 3] {
-        [0, 1, 2]
-            .map(|i| self.planes[i].iter().fold(self.volumes[i].sign(), |sign, part| sign.then_with(|| part.sign())))
+        // The origin is zero for the vertices of the volumes.
+        let a = minus(&[Fixed::ZERO; 3], &self.s);
+        let (b, c) = (minus(&self.e, &self.s), minus(&self.f, &self.s));
+        let volumes = self.volumes();
+        [(volumes[0], c, b), (volumes[1], a, c), (volumes[2], b, a)].map(|(volume, x, y)| {
+            volume.sign().then_with(|| {
+                let plane: [Fixed<A>; 3] = cross(&x, &y);
+                plane[0].sign().then(plane[1].sign()).then(plane[2].sign())
+            })
+        })
     }
 
+    #[inline(always)]
     fn height_sign(&self) -> Ordering {
         self.height().sign()
     }
 
+    #[inline(always)]
     fn t(&self) -> f64 {
-        Fixed::quotient(&self.height(), &self.sum(), self.exponent)
+        Fixed::quotient(&self.height(), &self.sum, self.exponent)
     }
 
+    #[inline(always)]
     fn weights(&self) -> [f64; 3] {
-        let sum = self.sum();
-        self.volumes.map(|volume| Fixed::quotient(&volume, &sum, 0))
+        let [u, v, w] = self.volumes();
+        [Fixed::quotient(&u, &self.sum, 0), Fixed::quotient(&v, &self.sum, 0), Fixed::quotient(&w, &self.sum, 0)]
     }
 }
 
@@ -339,8 +421,9 @@ pub(crate) fn is_degenerate(triangle: &Triangle) -> bool {
 }
 
 fn fixed_is_degenerate<const N: usize, const A: usize>(triangle: &Triangle) -> Option<bool> {
-    let window = Window::<N>::around(triangle.vertices.map(|vertex| vertex.to_array()).as_flattened())?;
-    let [a, b, c] = triangle.vertices.map(|vertex| window.vector(vertex));
+    let [a, b, c] = triangle.vertices;
+    let window = Window::<N>::around(&[a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z])?;
+    let (a, b, c) = (window.vector(a), window.vector(b), window.vector(c));
     let normal: [Fixed<A>; 3] = cross(&minus(&b, &a), &minus(&c, &a));
     Some(normal.iter().all(|part| part.sign() == Ordering::Equal))
 }
@@ -430,7 +513,7 @@ mod tests {
                     let refined = Refined::new::<false>(&crossing, triangle, ray, crossing.solution());
                     let rounded = match (refined.t::<false>(), refined.weights::<false>()) {
                         (Some(t), Some(weights)) => (Some(t), Some(weights)),
-                        _ => again(triangle, ray, refined.corrected::<false>()),
+                        _ => again(triangle, ray),
                     };
                     if let (Some(t), Some(weights)) = rounded {
                         self.rounded += 1;
@@ -443,10 +526,10 @@ mod tests {
                 FilterVerdict::Unsure => {
                     let signs = if let Some(fixed) = FixedVolumes::<1, 2, 3>::new(triangle, ray) {
                         self.fixed += 1;
-                        fixed.signs()
+                        fixed.signs().map(Ordering::reverse)
                     } else if let Some(fixed) = FixedVolumes::<2, 4, 6>::new(triangle, ray) {
                         self.fixed_twice += 1;
-                        fixed.signs()
+                        fixed.signs().map(Ordering::reverse)
                     } else if let Some(signs) = double_double_signs(triangle, ray) {
                         self.double_double += 1;
                         signs
@@ -458,6 +541,11 @@ mod tests {
                     if let Some(signs) = double_double_signs(triangle, ray) {
                         assert_eq!(signs, exact.signs(), "{triangle:?} {ray:?}");
                     }
+                    if let Some(fixed) = FixedVolumes::<1, 2, 3>::new(triangle, ray) {
+                        let turned = fixed.turned_signs().map(Ordering::reverse);
+                        assert_eq!(turned, exact.turned_signs(), "{triangle:?} {ray:?}");
+                        assert_eq!(fixed.height_sign().reverse(), exact.height_sign(), "{triangle:?} {ray:?}");
+                    }
                 }
             }
             // What the exact stages give is what integers of any size give.
@@ -466,6 +554,9 @@ mod tests {
             let t = hit.then(|| integer_t(triangle, ray));
             let same = |found: Option<f64>| found.map(f64::to_bits) == t.map(f64::to_bits);
             assert!(same(closest(triangle, ray, everywhere.clone())), "{triangle:?} {ray:?}");
+            if let Some(t) = t {
+                assert_eq!(crossing_t(triangle, ray).to_bits(), t.to_bits(), "{triangle:?} {ray:?}");
+            }
             let weights = integer_weights(triangle, ray);
             assert_eq!(exact_weights(triangle, ray), weights, "{triangle:?} {ray:?}");
             assert_eq!(closest_with_weights(triangle, ray, everywhere), t.zip(weights), "{triangle:?} {ray:?}");

@@ -80,19 +80,23 @@ fma_dispatch! {
 #[inline(always)]
 pub(super) fn closest_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> {
     let within = start..end;
-    let t = match filter::<FMA>(triangle, ray) {
-        FilterVerdict::Misses => return None,
-        FilterVerdict::Crosses(crossing) if crossing.is_before(start) => return None,
+    match filter::<FMA>(triangle, ray) {
+        FilterVerdict::Misses => None,
+        FilterVerdict::Crosses(crossing) if crossing.is_before(start) => None,
         FilterVerdict::Crosses(crossing) => {
             let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
-            refined.t::<FMA>().or_else(|| again(triangle, ray, refined.corrected::<FMA>()).0)
+            let t = refined.t::<FMA>().unwrap_or_else(|| t_again(triangle, ray));
+            holds(&within, t).then_some(t)
         }
-        FilterVerdict::Unsure => None,
-    };
-    match t {
-        Some(t) => holds(&within, t).then_some(t),
-        None => exact::closest(triangle, ray, within),
+        FilterVerdict::Unsure => exact::closest(triangle, ray, within),
     }
+}
+
+/// The correctly rounded `t` that one step has not decided.
+#[cold]
+#[inline(never)]
+fn t_again(triangle: &Triangle, ray: &Ray) -> f64 {
+    again(triangle, ray).0.unwrap_or_else(|| exact::crossing_t(triangle, ray))
 }
 
 fma_dispatch! {
@@ -106,7 +110,7 @@ pub(super) fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) ->
         FilterVerdict::Misses => return None,
         FilterVerdict::Crosses(crossing) => {
             let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
-            refined.weights::<FMA>().or_else(|| again(triangle, ray, refined.corrected::<FMA>()).1)
+            refined.weights::<FMA>().or_else(|| again(triangle, ray).1)
         }
         FilterVerdict::Unsure => None,
     };
@@ -138,7 +142,7 @@ pub(super) fn both_kernel<const FMA: bool>(
             let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
             match (refined.t::<FMA>(), refined.weights::<FMA>()) {
                 (Some(t), Some(weights)) => (Some(t), Some(weights)),
-                _ => again(triangle, ray, refined.corrected::<FMA>()),
+                _ => again(triangle, ray),
             }
         }
         FilterVerdict::Unsure => (None, None),
@@ -151,15 +155,23 @@ pub(super) fn both_kernel<const FMA: bool>(
     }
 }
 
-/// One more step, from a corrected solution: for a ray that is nearly parallel to the plane.
-#[cold]
-#[inline(never)]
-pub(super) fn again(triangle: &Triangle, ray: &Ray, corrected: [f64; 3]) -> (Option<f64>, Option<[f64; 3]>) {
-    let FilterVerdict::Crosses(crossing) = filter::<false>(triangle, ray) else { return (None, None) };
-    let refined = Refined::new::<false>(&crossing, triangle, ray, corrected);
+fma_dispatch! {
+    /// Two steps from the start, for a ray that is nearly parallel to the plane, if the second is likely to decide.
+    #[cold]
+    pub(super) fn again(triangle: &Triangle, ray: &Ray) -> (Option<f64>, Option<[f64; 3]>) = again_kernel;
+}
+
+#[inline(always)]
+fn again_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> (Option<f64>, Option<[f64; 3]>) {
+    let FilterVerdict::Crosses(crossing) = filter::<FMA>(triangle, ray) else { return (None, None) };
+    if !crossing.is_in_reach_of_two_steps(ray) {
+        return (None, None);
+    }
+    let first = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+    let refined = Refined::new::<FMA>(&crossing, triangle, ray, first.corrected::<FMA>());
     // False for NaN.
     if refined.weights.iter().all(|&weight| weight >= -0.25) {
-        (refined.t::<false>(), refined.weights::<false>())
+        (refined.t::<FMA>(), refined.weights::<FMA>())
     } else {
         (None, None)
     }

@@ -68,6 +68,21 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
     #[must_use]
     pub fn product<const A: usize, const B: usize>(a: &Fixed<A>, b: &Fixed<B>) -> Self {
         const { assert!(LIMBS >= A + B) };
+        // Up to two limbs by one: signed multiplication of the highest ones.
+        if A == 1 && B == 1 {
+            let wide = i128::from(a.0[0].cast_signed()) * i128::from(b.0[0].cast_signed());
+            return Self::from_upper(low(wide.cast_unsigned()), wide >> 64);
+        }
+        if A == 2 && B == 1 {
+            let b = b.0[0];
+            let lower = u128::from(a.0[0]) * u128::from(b);
+            let taken = a.0[0] & 0u64.wrapping_sub(b >> 63);
+            let upper = i128::from(a.0[1].cast_signed()) * i128::from(b.cast_signed());
+            return Self::from_upper(low(lower), upper + i128::from(high(lower)) - i128::from(taken));
+        }
+        if A == 1 && B == 2 {
+            return Self::product(b, a);
+        }
         let mut product = [0; LIMBS];
         // As if both were not negative.
         for i in 0..A {
@@ -90,6 +105,16 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         let filling = if product[A + B - 1] >> 63 == 1 { u64::MAX } else { 0 };
         product[A + B..].fill(filling);
         Self(product)
+    }
+
+    /// The number with this lowest limb and, above it, these two; with less than three limbs, it must fit.
+    #[inline(always)]
+    fn from_upper(lowest: u64, upper: i128) -> Self {
+        let mut limbs = [low((upper >> 127).cast_unsigned()); LIMBS];
+        for (limb, value) in limbs.iter_mut().zip([lowest, low(upper.cast_unsigned()), high(upper.cast_unsigned())]) {
+            *limb = value;
+        }
+        Self(limbs)
     }
 
     /// The same number with more limbs.
@@ -189,6 +214,17 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
     #[inline(always)]
     fn sign_mask(&self) -> u64 {
         0u64.wrapping_sub(self.0[LIMBS - 1] >> 63)
+    }
+
+    /// Without a branch.
+    #[inline(always)]
+    fn negated_if(self, negative: bool) -> Self {
+        let mask = 0u64.wrapping_sub(u64::from(negative));
+        let mut inverted = self;
+        for limb in &mut inverted.0 {
+            *limb ^= mask;
+        }
+        inverted - Self([mask; LIMBS])
     }
 
     /// The limbs of the magnitude.
@@ -369,11 +405,11 @@ impl<const LIMBS: usize> Window<LIMBS> {
         // The largest number is below 2^(biased - 1022).
         let biased = (top >> 52) as i32;
         let window = Self { exponent: biased.max(1) - 1022 - Self::BITS };
-        let mut fits = biased < 2047;
+        let mut lost = 0;
         for x in numbers {
-            fits &= window.lost_bits(*x) == 0;
+            lost |= window.place(*x).1;
         }
-        fits.then_some(window)
+        (biased < 2047 && lost == 0).then_some(window)
     }
 
     /// The unit: a number `x` of the window is `fixed(x) 2^exponent`.
@@ -387,16 +423,7 @@ impl<const LIMBS: usize> Window<LIMBS> {
     #[inline(always)]
     #[must_use]
     pub fn fixed(self, x: f64) -> Fixed<LIMBS> {
-        let mut limbs = [0; LIMBS];
-        let (mantissa, exponent) = parts(x);
-        let shift = exponent - self.exponent;
-        // (A shift to the right loses zeros, or what the limb below has.)
-        for (limb, i) in limbs.iter_mut().zip(0..) {
-            let shift = shift - 64 * i;
-            *limb = if shift >= 0 { shifted_left(mantissa, shift) } else { shifted_right(mantissa, -shift) };
-        }
-        let magnitude = Fixed(limbs);
-        if x.is_sign_negative() { -magnitude } else { magnitude }
+        Fixed(self.place(x).0).negated_if(x.is_sign_negative())
     }
 
     /// The components of a vector, as [`fixed`](Self::fixed) gives them.
@@ -406,18 +433,26 @@ impl<const LIMBS: usize> Window<LIMBS> {
         [self.fixed(v.x), self.fixed(v.y), self.fixed(v.z)]
     }
 
-    /// The bits of the number below the unit.
+    /// The magnitude in units, and the bits that are lost below the unit.
     #[inline(always)]
-    fn lost_bits(self, x: f64) -> u64 {
+    fn place(self, x: f64) -> ([u64; LIMBS], u64) {
+        const { assert!(LIMBS == 1 || LIMBS == 2) };
+        let mut limbs = [0; LIMBS];
         let (mantissa, exponent) = parts(x);
-        let shift = self.exponent - exponent;
-        if shift <= 0 {
-            0
-        } else if shift < 64 {
-            mantissa & ((1 << shift) - 1)
+        // The first bit of the significand as high as it may stand, and by how much it stands lower.
+        let down = (self.exponent + Self::BITS - 53 - exponent).cast_unsigned();
+        let lost = if LIMBS == 1 {
+            let (top, down) = (mantissa << 8, down.min(63));
+            limbs[0] = top >> down;
+            top ^ (limbs[0] << down)
         } else {
-            mantissa
-        }
+            let (top, down) = (u128::from(mantissa) << 72, down.min(127));
+            let magnitude = top >> down;
+            (limbs[0], limbs[LIMBS - 1]) = (low(magnitude), high(magnitude));
+            let lost = top ^ (magnitude << down);
+            low(lost) | high(lost)
+        };
+        (limbs, lost)
     }
 }
 
@@ -428,16 +463,6 @@ fn parts(x: f64) -> (u64, i32) {
     let biased = ((bits >> 52) & 0x7ff) as i32;
     let fraction = bits & ((1 << 52) - 1);
     (if biased == 0 { fraction } else { fraction | 1 << 52 }, biased.max(1) - 1075)
-}
-
-#[inline(always)]
-fn shifted_left(x: u64, by: i32) -> u64 {
-    x.checked_shl(by.cast_unsigned()).unwrap_or(0)
-}
-
-#[inline(always)]
-fn shifted_right(x: u64, by: i32) -> u64 {
-    x.checked_shr(by.cast_unsigned()).unwrap_or(0)
 }
 
 #[cfg(test)]
