@@ -11,7 +11,9 @@ use glam::DVec3;
 
 use crate::exact::stage::{Stage, decided};
 use crate::exact::vector::dot;
-use crate::exact::{Dyadic, Fixed, U, Window, power_of_two, remainder, rounded_ends, two_diff, two_prod, two_sum};
+use crate::exact::{
+    Dyadic, Fixed, U, Window, bits_spanned, power_of_two, remainder, rounded_ends, two_diff, two_prod, two_sum,
+};
 use crate::fma_dispatch;
 
 /// Returns `incident` mirrored in the plane through the origin with the given normal: `v - 2 (v·n) / (n·n) n`.
@@ -238,8 +240,10 @@ fn fixed<const N: usize, const S: usize, const V: usize>(
 /// The last stage, exact for all finite vectors; `n` is not zero.
 fn integers(v: DVec3, n: DVec3) -> DVec3 {
     decided(Stage::Integers);
-    // v_i (n·n) - 2 (v·n) n_i lies below 2^3076 and is a multiple of 2^-3222; two limbs more for the rounding
-    sized::<104>(v, n)
+    // v_i (n·n) - 2 (v·n) n_i has nine terms of degree three; two limbs for the ends and two more for the rounding. Of
+    // any doubles it lies below 2^3076 and is a multiple of 2^-3222.
+    let bits = bits_spanned(&v.to_array()) + 2 * bits_spanned(&n.to_array()) + 4;
+    if bits <= 64 * 20 { sized::<24>(v, n) } else { sized::<104>(v, n) }
 }
 
 #[inline(never)]

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use rt_math::exact::vector::{cross, difference, dot, minus};
-use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, power_of_two, power_of_two_near_inverse};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, bits_spanned, power_of_two, power_of_two_near_inverse};
 
 use super::{FARTHEST, Triangle, Verdict};
 use crate::Ray;
@@ -165,8 +165,33 @@ fn ask_wider<R>(triangle: &Triangle, ray: &Ray, question: impl FnOnce(&dyn Volum
         decided(Stage::Fixed);
         question(&volumes)
     } else {
-        question(&WideVolumes { triangle, ray, integers: OnceCell::new() })
+        ask_integers(triangle, ray, question)
     }
+}
+
+/// Limbs for volumes of points and directions that span at most [`NARROW`] bits with them.
+const NARROW_LIMBS: usize = 24;
+const NARROW: i32 = 64 * 20;
+/// ... and of any; each with two for the ends and two for a quotient: multiples of 2^-3222 below 2^3079 take 101.
+const ANY_LIMBS: usize = 104;
+
+/// Asks integers of the size that the exponents of the numbers need.
+#[cold]
+#[inline(never)]
+fn ask_integers<R>(triangle: &Triangle, ray: &Ray, question: impl FnOnce(&dyn Volumes) -> R) -> R {
+    if volume_bits(triangle, ray) <= NARROW {
+        question(&WideVolumes::<NARROW_LIMBS> { triangle, ray, integers: OnceCell::new() })
+    } else {
+        question(&WideVolumes::<ANY_LIMBS> { triangle, ray, integers: OnceCell::new() })
+    }
+}
+
+/// The bits that volumes and heights span at most: a product of three, two or three of them differences, and the sum of
+/// three times six such.
+fn volume_bits(triangle: &Triangle, ray: &Ray) -> i32 {
+    let ([a, b, c], o) = (triangle.vertices, ray.origin());
+    let points = bits_spanned(&[o.x, o.y, o.z, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]) + 1;
+    2 * points + points.max(bits_spanned(&ray.direction().to_array())) + 5
 }
 
 /// The verdict from the signs of the volumes and of their sum; `None` if the sum is zero.
@@ -306,14 +331,14 @@ impl<const N: usize, const A: usize, const V: usize> Volumes for FixedVolumes<N,
 
 /// The volumes of numbers that no window holds: signs in double-double where that is certain, all else in integers of
 /// any size.
-struct WideVolumes<'a> {
+struct WideVolumes<'a, const LIMBS: usize> {
     triangle: &'a Triangle,
     ray: &'a Ray,
-    integers: OnceCell<IntegerVolumes>,
+    integers: OnceCell<IntegerVolumes<LIMBS>>,
 }
 
-impl WideVolumes<'_> {
-    fn integers(&self) -> &IntegerVolumes {
+impl<const LIMBS: usize> WideVolumes<'_, LIMBS> {
+    fn integers(&self) -> &IntegerVolumes<LIMBS> {
         self.integers.get_or_init(|| {
             decided(Stage::Integers);
             IntegerVolumes::new(self.triangle, self.ray)
@@ -321,7 +346,7 @@ impl WideVolumes<'_> {
     }
 }
 
-impl Volumes for WideVolumes<'_> {
+impl<const LIMBS: usize> Volumes for WideVolumes<'_, LIMBS> {
     fn signs(&self) -> [Ordering; 4] {
         let Some(signs) = double_double_signs(self.triangle, self.ray) else { return self.integers().signs() };
         decided(Stage::DoubleDouble);
@@ -345,40 +370,35 @@ impl Volumes for WideVolumes<'_> {
     }
 }
 
-/// Limbs for what a ray and a triangle span, of degree three: multiples of 2^-3222 below 2^3079 take 101, and their
-/// quotients two more.
-type VolumeInteger = Dyadic<104>;
-type IntegerVector = [VolumeInteger; 3];
-
 /// The volumes in integers of any size.
-struct IntegerVolumes {
+struct IntegerVolumes<const LIMBS: usize> {
     /// The first vertex relative to the origin of the ray.
-    vertex: IntegerVector,
+    vertex: [Dyadic<LIMBS>; 3],
     /// `b x c`, `c x a`, `a x b`.
-    planes: [IntegerVector; 3],
+    planes: [[Dyadic<LIMBS>; 3]; 3],
     /// `u`, `v`, `w`.
-    volumes: [VolumeInteger; 3],
+    volumes: [Dyadic<LIMBS>; 3],
 }
 
-impl IntegerVolumes {
+impl<const LIMBS: usize> IntegerVolumes<LIMBS> {
     fn new(triangle: &Triangle, ray: &Ray) -> Self {
-        let direction = ray.direction().to_array().map(VolumeInteger::from_f64);
-        let [a, b, c] = triangle.vertices.map(|vertex| difference::<VolumeInteger>(vertex, ray.origin()));
+        let direction = ray.direction().to_array().map(Dyadic::from_f64);
+        let [a, b, c] = triangle.vertices.map(|vertex| difference::<Dyadic<LIMBS>>(vertex, ray.origin()));
         let planes = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
         let volumes = [0, 1, 2].map(|i| dot(&planes[i], &direction));
         Self { vertex: a, planes, volumes }
     }
 
-    fn sum(&self) -> VolumeInteger {
+    fn sum(&self) -> Dyadic<LIMBS> {
         &self.volumes[0] + &self.volumes[1] + &self.volumes[2]
     }
 
-    fn height(&self) -> VolumeInteger {
+    fn height(&self) -> Dyadic<LIMBS> {
         dot(&self.planes[0], &self.vertex)
     }
 }
 
-impl Volumes for IntegerVolumes {
+impl<const LIMBS: usize> Volumes for IntegerVolumes<LIMBS> {
     fn signs(&self) -> [Ordering; 4] {
         let [u, v, w] = &self.volumes;
         [u.sign(), v.sign(), w.sign(), self.sum().sign()]
@@ -394,12 +414,12 @@ impl Volumes for IntegerVolumes {
     }
 
     fn t(&self) -> f64 {
-        VolumeInteger::quotient(&self.height(), &self.sum())
+        Dyadic::quotient(&self.height(), &self.sum())
     }
 
     fn weights(&self) -> [f64; 3] {
         let sum = self.sum();
-        [0, 1, 2].map(|i| VolumeInteger::quotient(&self.volumes[i], &sum))
+        [0, 1, 2].map(|i| Dyadic::quotient(&self.volumes[i], &sum))
     }
 }
 
@@ -459,13 +479,13 @@ fn integer_scaled_normal(triangle: &Triangle) -> Option<DVec3> {
 /// The correctly rounded `t`, by integers of any size alone: the oracle of the other stages.
 #[cfg(test)]
 pub(super) fn integer_t(triangle: &Triangle, ray: &Ray) -> f64 {
-    IntegerVolumes::new(triangle, ray).t()
+    IntegerVolumes::<ANY_LIMBS>::new(triangle, ray).t()
 }
 
 /// The correctly rounded weights, likewise.
 #[cfg(test)]
 pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
-    let volumes = IntegerVolumes::new(triangle, ray);
+    let volumes = IntegerVolumes::<ANY_LIMBS>::new(triangle, ray);
     verdict(volumes.signs())?.is_hit().then(|| volumes.weights())
 }
 
@@ -496,11 +516,12 @@ mod tests {
         integers: usize,
         rounded: usize,
         not_rounded: usize,
+        narrow: usize,
     }
 
     impl Stages {
         fn count(&mut self, triangle: &Triangle, ray: &Ray) {
-            let exact = IntegerVolumes::new(triangle, ray);
+            let exact = IntegerVolumes::<ANY_LIMBS>::new(triangle, ray);
             let expected = verdict(exact.signs()).unwrap_or(Verdict::Parallel);
             match filter::<false>(triangle, ray) {
                 FilterVerdict::Misses => {
@@ -547,6 +568,12 @@ mod tests {
                         assert_eq!(fixed.height_sign().reverse(), exact.height_sign(), "{triangle:?} {ray:?}");
                     }
                 }
+            }
+            if volume_bits(triangle, ray) <= NARROW {
+                let narrow = IntegerVolumes::<NARROW_LIMBS>::new(triangle, ray);
+                assert_eq!(narrow.signs(), exact.signs(), "{triangle:?} {ray:?}");
+                assert!(!expected.is_hit() || narrow.t() == exact.t() && narrow.weights() == exact.weights());
+                self.narrow += 1;
             }
             // What the exact stages give is what integers of any size give.
             let hit = expected.is_hit();
@@ -595,14 +622,17 @@ mod tests {
             // The same in a plane that no window holds together with the origin.
             let [a, b, c] = triangle.vertices.map(|vertex| vertex + DVec3::new(0.0, 0.0, 2f64.powi(-300)));
             stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, DVec3::NEG_Z).unwrap());
+            // As many bits as integers that are not of the largest size hold, or nearly.
+            let [a, b, c] = triangle.vertices.map(|vertex| vertex + DVec3::new(0.0, 0.0, 1.1 * 2f64.powi(-370)));
+            stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, DVec3::new(1e-110, 0.0, -1.0)).unwrap());
             // t is halfway between two doubles
             let origin = DVec3::new(0.25, 0.25, 1.0 + f64::from(k) * f64::EPSILON);
             let plane = -(f64::EPSILON / 2.0);
             let [a, b, c] = triangle.vertices.map(|vertex| vertex + DVec3::new(0.0, 0.0, plane));
             stages.count(&Triangle::new(a, b, c).unwrap(), &Ray::new(origin, DVec3::NEG_Z).unwrap());
         }
-        let Stages { filter, fixed, fixed_twice, double_double, integers, rounded, not_rounded } = stages;
-        let all = [filter, fixed, fixed_twice, double_double, integers, rounded, not_rounded];
+        let Stages { filter, fixed, fixed_twice, double_double, integers, rounded, not_rounded, narrow } = stages;
+        let all = [filter, fixed, fixed_twice, double_double, integers, rounded, not_rounded, narrow];
         assert!(all.iter().all(|&n| n >= 60), "{stages:?}");
     }
 }

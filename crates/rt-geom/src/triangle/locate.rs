@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 use rt_math::exact::vector::{cross, difference, dot, minus};
-use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, power_of_two, round_if_certain};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, bits_spanned, power_of_two, round_if_certain};
 use rt_math::fma_dispatch;
 
 use crate::Triangle;
@@ -89,7 +89,7 @@ impl Triangle {
         if !point.is_finite() || self.is_degenerate() {
             return None;
         }
-        Some(double_double_weights(point, self).unwrap_or_else(|| exact_weights(point, self)))
+        Some(exact_weights(point, self))
     }
 
     /// Whether a point and the three vertices lie in one plane, exactly; false if the point is not finite.
@@ -148,13 +148,20 @@ fn exact_signs(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
     }
 }
 
-/// The weights, correctly rounded, of a triangle that has area; slow path, always decides.
+/// The weights, correctly rounded, of a triangle that has area: in fixed-point numbers first, which cost less than
+/// double-double.
+fn exact_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
+    match FixedTurns::<4>::new::<1, 2>(point, triangle) {
+        Some(turns) => turns.weights(),
+        None => double_double_weights(point, triangle).unwrap_or_else(|| wider_weights(point, triangle)),
+    }
+}
+
+/// The weights where no window of one limb holds the points, nor double-double is certain; always decides.
 #[cold]
 #[inline(never)]
-fn exact_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
-    if let Some(turns) = FixedTurns::<4>::new::<1, 2>(point, triangle) {
-        turns.weights()
-    } else if let Some(turns) = FixedTurns::<8>::new::<2, 4>(point, triangle) {
+fn wider_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
+    if let Some(turns) = FixedTurns::<8>::new::<2, 4>(point, triangle) {
         turns.weights()
     } else {
         integer_weights(point, triangle)
@@ -176,10 +183,9 @@ impl<const Q: usize> FixedTurns<Q> {
     #[inline(always)]
     fn new<const N: usize, const S: usize>(point: DVec3, triangle: &Triangle) -> Option<Self> {
         let [a, b, c] = triangle.vertices();
-        let points = [a, b, c, point];
-        let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
-        let [a, b, c, p] = points.map(|point| window.vector(point));
-        let [e, f, q] = [b, c, p].map(|end| minus(&end, &a));
+        let (window, p) = (Window::<N>::around(&coordinates(point, triangle))?, point);
+        let a = window.vector(a);
+        let (e, f, q) = (minus(&window.vector(b), &a), minus(&window.vector(c), &a), minus(&window.vector(p), &a));
         let [ee, ef, ff]: [Fixed<S>; 3] = [dot(&e, &e), dot(&e, &f), dot(&f, &f)];
         let [eq, fq]: [Fixed<S>; 2] = [dot(&e, &q), dot(&f, &q)];
         let minor =
@@ -189,12 +195,20 @@ impl<const Q: usize> FixedTurns<Q> {
     }
 
     fn signs(&self) -> [Ordering; 3] {
-        self.turns.map(|turn| turn.sign())
+        [self.turns[0].sign(), self.turns[1].sign(), self.turns[2].sign()]
     }
 
     fn weights(&self) -> [f64; 3] {
-        self.turns.map(|turn| Fixed::quotient(&turn, &self.sum, 0))
+        let weight = |turn: &Fixed<Q>| Fixed::quotient(turn, &self.sum, 0);
+        [weight(&self.turns[0]), weight(&self.turns[1]), weight(&self.turns[2])]
     }
+}
+
+/// The coordinates of the vertices and the point.
+#[inline(always)]
+fn coordinates(p: DVec3, triangle: &Triangle) -> [f64; 12] {
+    let [a, b, c] = triangle.vertices();
+    [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, p.x, p.y, p.z]
 }
 
 #[cold]
@@ -231,28 +245,57 @@ fn double_double_weights_kernel<const FMA: bool>(point: DVec3, triangle: &Triang
     Some([weight(turns[0])?, weight(turns[1])?, weight(turns[2])?])
 }
 
-/// Limbs for the turns, of degree four: multiples of 2^-4296 below 2^4105 take 134, and their quotients two more.
-type TurnInteger = Dyadic<136>;
+/// Limbs for the turns of points that span at most [`NARROW`] bits with them.
+const NARROW_LIMBS: usize = 24;
+const NARROW: i32 = 64 * 20;
+/// ... and of any; each with two for the ends and two for a quotient: multiples of 2^-4296 below 2^4105 take 134.
+const ANY_LIMBS: usize = 136;
 
-fn integer_turns(point: DVec3, triangle: &Triangle) -> ([TurnInteger; 3], [TurnInteger; 3]) {
+/// The bits that a turn and `n . n` span at most: twelve products of four differences.
+fn turn_bits(point: DVec3, triangle: &Triangle) -> i32 {
+    4 * (bits_spanned(&coordinates(point, triangle)) + 1) + 4
+}
+
+type Turns<const LIMBS: usize> = [Dyadic<LIMBS>; 3];
+
+/// The turns, and `n`.
+fn integer_turns<const LIMBS: usize>(point: DVec3, triangle: &Triangle) -> (Turns<LIMBS>, Turns<LIMBS>) {
     let [a, b, c] = triangle.vertices();
-    let n = cross(&difference::<TurnInteger>(b, a), &difference(c, a));
-    let turn = |from, to| dot(&n, &cross(&difference::<TurnInteger>(to, from), &difference(point, from)));
+    let n = cross(&difference::<Dyadic<LIMBS>>(b, a), &difference(c, a));
+    let turn = |from, to| dot(&n, &cross(&difference::<Dyadic<LIMBS>>(to, from), &difference(point, from)));
     ([turn(b, c), turn(c, a), turn(a, b)], n)
 }
 
 #[cold]
 #[inline(never)]
 fn integer_signs(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
-    integer_turns(point, triangle).0.map(|turn| turn.sign())
+    if turn_bits(point, triangle) <= NARROW {
+        sized_signs::<NARROW_LIMBS>(point, triangle)
+    } else {
+        sized_signs::<ANY_LIMBS>(point, triangle)
+    }
+}
+
+#[inline(never)]
+fn sized_signs<const LIMBS: usize>(point: DVec3, triangle: &Triangle) -> [Ordering; 3] {
+    integer_turns::<LIMBS>(point, triangle).0.map(|turn| turn.sign())
 }
 
 #[cold]
 #[inline(never)]
 fn integer_weights(point: DVec3, triangle: &Triangle) -> [f64; 3] {
-    let (turns, n) = integer_turns(point, triangle);
+    if turn_bits(point, triangle) <= NARROW {
+        sized_weights::<NARROW_LIMBS>(point, triangle)
+    } else {
+        sized_weights::<ANY_LIMBS>(point, triangle)
+    }
+}
+
+#[inline(never)]
+fn sized_weights<const LIMBS: usize>(point: DVec3, triangle: &Triangle) -> [f64; 3] {
+    let (turns, n) = integer_turns::<LIMBS>(point, triangle);
     let square = dot(&n, &n);
-    turns.map(|turn| TurnInteger::quotient(&turn, &square))
+    turns.map(|turn| Dyadic::quotient(&turn, &square))
 }
 
 /// The sign of the volume that the point spans with the triangle, compared with zero.
@@ -276,10 +319,9 @@ fn exact_coplanar(point: DVec3, triangle: &Triangle) -> bool {
 
 fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(point: DVec3, triangle: &Triangle) -> Option<bool> {
     let [a, b, c] = triangle.vertices();
-    let points = [a, b, c, point];
-    let window = Window::<N>::around(points.map(|point| point.to_array()).as_flattened())?;
-    let [a, b, c, p] = points.map(|point| window.vector(point));
-    let [e, f, q] = [b, c, p].map(|end| minus(&end, &a));
+    let (window, p) = (Window::<N>::around(&coordinates(point, triangle))?, point);
+    let a = window.vector(a);
+    let (e, f, q) = (minus(&window.vector(b), &a), minus(&window.vector(c), &a), minus(&window.vector(p), &a));
     let n: [Fixed<A>; 3] = cross(&e, &f);
     let volume: Fixed<V> = dot(&n, &q);
     Some(volume.sign() == Ordering::Equal)
@@ -289,7 +331,7 @@ fn fixed_coplanar<const N: usize, const A: usize, const V: usize>(point: DVec3, 
 #[inline(never)]
 fn integer_coplanar(point: DVec3, triangle: &Triangle) -> bool {
     let [a, b, c] = triangle.vertices();
-    let n = cross(&difference::<TurnInteger>(b, a), &difference(c, a));
+    let n = cross(&difference::<Dyadic<ANY_LIMBS>>(b, a), &difference(c, a));
     dot(&n, &difference(point, a)).sign() == Ordering::Equal
 }
 
@@ -308,7 +350,14 @@ mod tests {
             let [a, b, c] = triangle.vertices();
             // interior; on an edge but for rounding; a vertex
             for point in [a + 0.3 * (b - a) + 0.5 * s * (c - a), a + s * (b - a), b] {
-                let exact = integer_signs(point, &triangle);
+                let exact = sized_signs::<ANY_LIMBS>(point, &triangle);
+                assert_eq!(integer_signs(point, &triangle), exact, "{point:?}");
+                let weights = sized_weights::<ANY_LIMBS>(point, &triangle);
+                assert_eq!(integer_weights(point, &triangle), weights, "{point:?}");
+                assert_eq!(triangle.barycentric(point), Some(weights), "{point:?}");
+                if let Some(double_double) = double_double_weights(point, &triangle) {
+                    assert_eq!(double_double, weights, "{point:?}");
+                }
                 assert_eq!(exact_signs(point, &triangle), exact, "{point:?}");
                 let fixed = FixedTurns::<8>::new::<2, 4>(point, &triangle).expect("a window of two limbs");
                 assert_eq!(fixed.signs(), exact, "{point:?}");

@@ -29,7 +29,8 @@ use super::enclosure::{Interval, Leading, enclose, high, low, round};
 ///
 /// Each kernel derives its `LIMBS` from the exponents of its inputs by this rule, for any doubles, which makes an
 /// overflow impossible; a finite double is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴. The methods that round state what they
-/// need besides.
+/// need besides. Every number is cleared and moved at its full size: where [`bits_spanned`] by the input shows that
+/// fewer limbs do, a kernel takes fewer.
 ///
 /// # Panics
 /// An operation whose result does not fit panics. The rule above excludes it.
@@ -52,11 +53,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
     #[must_use]
     pub fn from_f64(x: f64) -> Self {
         const { assert!(LIMBS >= 2) };
-        let bits = x.to_bits();
-        let biased = ((bits >> 52) & 0x7ff) as i32;
-        let fraction = bits & ((1 << 52) - 1);
-        let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
-        let exponent = biased.max(1) - 1075;
+        let (mantissa, exponent) = mantissa_and_weight(x);
         let wide = u128::from(mantissa) << exponent.rem_euclid(64);
         let mut number = Self::blank(x.is_sign_negative(), exponent.div_euclid(64), 2);
         (number.limbs[0], number.limbs[1]) = (low(wide), high(wide));
@@ -465,6 +462,36 @@ fn decide<const LIMBS: usize>(lower: f64, upper: f64, compare: impl FnOnce(&Dyad
     }
 }
 
+/// Returns the number of bits from the highest to the lowest one that any of these finite doubles has set; zeros have
+/// none.
+///
+/// ```
+/// use rt_math::exact::bits_spanned;
+///
+/// assert_eq!(bits_spanned(&[1.0, 0.0, -0.75]), 3);
+/// ```
+#[must_use]
+pub fn bits_spanned(numbers: &[f64]) -> i32 {
+    let (mut top, mut bottom) = (i32::MIN, i32::MAX);
+    for x in numbers {
+        let (mantissa, exponent) = mantissa_and_weight(*x);
+        if mantissa != 0 {
+            top = top.max(exponent + 64 - mantissa.leading_zeros().cast_signed());
+            bottom = bottom.min(exponent + mantissa.trailing_zeros().cast_signed());
+        }
+    }
+    if top < bottom { 0 } else { top - bottom }
+}
+
+/// The magnitude of a double as an integer times a power of two.
+#[inline(always)]
+pub(super) fn mantissa_and_weight(x: f64) -> (u64, i32) {
+    let bits = x.to_bits();
+    let biased = ((bits >> 52) & 0x7ff) as i32;
+    let fraction = bits & ((1 << 52) - 1);
+    (if biased == 0 { fraction } else { fraction | 1 << 52 }, biased.max(1) - 1075)
+}
+
 /// A limb count as a signed position.
 #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most LIMBS, a few hundred")]
 fn index(limbs: usize) -> i32 {
@@ -535,6 +562,30 @@ mod tests {
             assert_eq!(x.scale(k).scale(-k), x);
             assert_eq!(&x - &x, Number::ZERO);
         }
+    }
+
+    #[test]
+    fn spans_hold_every_bit_and_end_at_two_of_them() {
+        let mut rng = Random::new(11);
+        for _ in 0..cases(100_000) {
+            let numbers = [0; 3].map(|_| match rng.below(3) {
+                0 => 0.0,
+                1 => rng.finite(),
+                _ => f64::from(rng.integer(-9..9)) * 2f64.powi(rng.integer(-60..60)),
+            });
+            let lowest = (-1074..1024).find(|&k| numbers.iter().any(|&x| has_bit(x, k)));
+            let highest = (-1074..1024).rev().find(|&k| numbers.iter().any(|&x| has_bit(x, k)));
+            let expected = lowest.zip(highest).map_or(0, |(lowest, highest)| highest - lowest + 1);
+            assert_eq!(bits_spanned(&numbers), expected, "{numbers:?}");
+        }
+    }
+
+    /// Whether a double has the bit of weight `2^k`.
+    fn has_bit(x: f64, k: i32) -> bool {
+        let limbs = Number::from_f64(x);
+        let place = k.div_euclid(64) - limbs.base;
+        let limb = usize::try_from(place).ok().and_then(|place| limbs.live().get(place));
+        limb.is_some_and(|limb| limb >> k.rem_euclid(64) & 1 == 1)
     }
 
     #[test]

@@ -16,7 +16,7 @@ use core::ops::{Add, Neg, Sub};
 use glam::DVec3;
 
 use super::double_double::DoubleDouble;
-use super::dyadic::Dyadic;
+use super::dyadic::{Dyadic, mantissa_and_weight};
 use super::enclosure::{Leading, enclose, high, low};
 use super::error_free::U;
 use super::round::round_if_certain;
@@ -438,7 +438,7 @@ impl<const LIMBS: usize> Window<LIMBS> {
     fn place(self, x: f64) -> ([u64; LIMBS], u64) {
         const { assert!(LIMBS == 1 || LIMBS == 2) };
         let mut limbs = [0; LIMBS];
-        let (mantissa, exponent) = parts(x);
+        let (mantissa, exponent) = mantissa_and_weight(x);
         // The first bit of the significand as high as it may stand, and by how much it stands lower.
         let down = (self.exponent + Self::BITS - 53 - exponent).cast_unsigned();
         let lost = if LIMBS == 1 {
@@ -454,15 +454,6 @@ impl<const LIMBS: usize> Window<LIMBS> {
         };
         (limbs, lost)
     }
-}
-
-/// The magnitude of a finite double as an integer times a power of two.
-#[inline(always)]
-fn parts(x: f64) -> (u64, i32) {
-    let bits = x.to_bits();
-    let biased = ((bits >> 52) & 0x7ff) as i32;
-    let fraction = bits & ((1 << 52) - 1);
-    (if biased == 0 { fraction } else { fraction | 1 << 52 }, biased.max(1) - 1075)
 }
 
 #[cfg(test)]

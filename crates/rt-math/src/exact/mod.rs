@@ -52,7 +52,7 @@ pub use ball::Ball;
 pub use dispatch::has_fma;
 pub use dot::{difference_dot_sign, dot_sign, dot_with_error};
 pub use double_double::DoubleDouble;
-pub use dyadic::Dyadic;
+pub use dyadic::{Dyadic, bits_spanned};
 pub use error_free::{U, fast_two_sum, remainder, two_diff, two_prod, two_prod_with, two_sum};
 pub use fixed::{Fixed, MOST_LIMBS, Window};
 pub use round::{round_if_certain, rounded_ends};
