@@ -7,10 +7,11 @@
 use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use glam::DVec3;
 use rt_math::exact::vector::{difference, dot};
-use rt_math::exact::{U, power_of_two, two_diff, two_prod, two_sum};
+use rt_math::exact::{DoubleDouble, U, power_of_two, two_diff, two_prod, two_sum};
+use rt_math::fma_dispatch;
 
 use super::exact::{contains_exactly, smallest_radius};
-use super::tangent::{ORDINARY, Tangent, Wide};
+use super::tangent::{ORDINARY, Tangent};
 use crate::Sphere;
 use crate::simd::{self as lanes, has_fma};
 
@@ -346,20 +347,9 @@ impl Bracket {
         self.high = self.high.max(round_up(simd, reach.high, reach.low + reach.error));
     }
 
-    /// Widens the bracket so that it holds for all of `spheres`.
-    pub(super) fn enclose_all(&mut self, spheres: &[Sphere]) {
-        for sphere in spheres {
-            let rough = (sphere.center() - self.center).length() + sphere.radius();
-            // A sphere that is inside by more than the error of this estimate changes nothing.
-            if rough < self.low * (1.0 - 16.0 * U) {
-                continue;
-            }
-            let from = difference::<Wide>(sphere.center(), self.center);
-            let reach = dot(&from, &from).sqrt() + Wide::new(sphere.radius());
-            let error = if from == [Wide::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
-            self.low = self.low.max(sum_up(reach.high(), reach.low() - error));
-            self.high = self.high.max(sum_up(reach.high(), reach.low() + error));
-        }
+    /// Widens the bracket so that it holds for all of `spheres`, or to `limit` at least.
+    pub(super) fn enclose_all(&mut self, spheres: &[Sphere], limit: f64) {
+        enclose_all(self, spheres, limit);
     }
 
     /// The smallest double of the bracket that encloses all spheres. Asks integers at most three questions a sphere.
@@ -377,6 +367,30 @@ impl Bracket {
             }
         }
         radius
+    }
+}
+
+fma_dispatch! {
+    #[cold]
+    fn enclose_all(bracket: &mut Bracket, spheres: &[Sphere], limit: f64) = enclose_all_kernel;
+}
+
+#[inline(always)]
+fn enclose_all_kernel<const FMA: bool>(bracket: &mut Bracket, spheres: &[Sphere], limit: f64) {
+    for sphere in spheres {
+        let rough = (sphere.center() - bracket.center).length() + sphere.radius();
+        // A sphere that is inside by more than the error of this estimate changes nothing.
+        if rough < bracket.low * (1.0 - 16.0 * U) {
+            continue;
+        }
+        let from = difference::<DoubleDouble<FMA>>(sphere.center(), bracket.center);
+        let reach = dot(&from, &from).sqrt() + DoubleDouble::new(sphere.radius());
+        let error = if from == [DoubleDouble::ZERO; 3] { 0.0 } else { reach.high() * REACH_ERROR };
+        bracket.low = bracket.low.max(sum_up(reach.high(), reach.low() - error));
+        bracket.high = bracket.high.max(sum_up(reach.high(), reach.low() + error));
+        if bracket.high >= limit {
+            return;
+        }
     }
 }
 
@@ -492,7 +506,7 @@ mod tests {
                 (0..7).map(|_| Sphere::new(random.point(), 0.1 * random.share()).unwrap()).collect();
             let mut bracket = Bracket { center: 0.1 * random.point(), low: 0.0, high: 0.0 };
             bracket.enclose(crate::simd::baseline(), [0, 1, 2, 3].map(|i| &spheres[i]));
-            bracket.enclose_all(&spheres[4..]);
+            bracket.enclose_all(&spheres[4..], f64::INFINITY);
             let reaches = spheres.iter().map(|sphere| reach_of(bracket.center, sphere));
             let most = reaches.reduce(|a, b| if a > b { a } else { b }).unwrap();
             let radius = bracket.settle(&spheres);

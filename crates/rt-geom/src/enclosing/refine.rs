@@ -35,7 +35,7 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
         }
     }
     let (center, _) = tangent.sphere(spheres, DVec3::ZERO);
-    let mut best = bracket(spheres, DVec3::from(center.map(SolverNumber::round)));
+    let mut best = bracket(spheres, tangent.support(), DVec3::from(center.map(SolverNumber::round)), f64::INFINITY);
     // Far from the origin doubles lie far apart, and which of the eight around the center is best shows.
     if best.center.abs().max_element() > best.high {
         let away = |c: Wide| if c.low() > 0.0 { c.high().next_up() } else { c.high().next_down() };
@@ -45,7 +45,7 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
                 if corner >> axis & 1 == 1 && c.low() != 0.0 { away(c) } else { c.high() }
             };
             let other = DVec3::new(pick(0), pick(1), pick(2));
-            let other = bracket(spheres, other);
+            let other = bracket(spheres, tangent.support(), other, best.high);
             if other.high < best.high {
                 best = other;
             }
@@ -78,10 +78,16 @@ fn farthest(tangent: &Tangent<Wide>, spheres: &[Sphere], these: impl Iterator<It
     found.filter(|index| !tangent.support().contains(index))
 }
 
-/// Brackets the radius that encloses all spheres around a center.
-fn bracket(spheres: &[Sphere], center: DVec3) -> Bracket {
+/// Brackets the radius that encloses all spheres around a center; where it reaches `limit`, perhaps not all. Those of
+/// the support, which most likely decide, come first.
+fn bracket(spheres: &[Sphere], support: &[usize], center: DVec3, limit: f64) -> Bracket {
     let mut bracket = Bracket { center, low: 0.0, high: 0.0 };
-    bracket.enclose_all(spheres);
+    for &index in support {
+        bracket.enclose_all(&spheres[index..=index], limit);
+    }
+    if bracket.high < limit {
+        bracket.enclose_all(spheres, limit);
+    }
     bracket
 }
 
