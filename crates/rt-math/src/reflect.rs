@@ -345,6 +345,38 @@ mod tests {
         assert!(triple > 1_000, "{triple}");
     }
 
+    /// Where the terms cancel but for some `u²` of them, the rounding errors of what is left decide the last bits: the
+    /// bound of the terms of third order is needed.
+    #[test]
+    fn a_component_that_cancels_to_some_last_bits_of_its_terms_is_correct() {
+        let mut rng = Random::new(39);
+        let mut triple = 0;
+        for _ in 0..cases(1_000_000) {
+            // Of different size, so that terms of third order have more bits than a double.
+            let n = [0; 3].map(|_| i128::from(rng.bits() >> 11) << rng.below(10));
+            // With v_y = 0 the component is (v_x g - 2 n_x n_z v_z) / (n·n): zero for v_x : v_z = 2 n_x n_z : g.
+            let g = n[1] * n[1] + n[2] * n[2] - n[0] * n[0];
+            let (mut a, mut b) = (2 * n[0] * n[2], g.abs());
+            let ([mut x, mut z], [mut next_x, mut next_z]) = ([0, 1], [1, 0]);
+            while b != 0 {
+                let quotient = a / b;
+                (a, b) = (b, a - quotient * b);
+                ([x, z], [next_x, next_z]) = ([next_x, next_z], [quotient * next_x + x, quotient * next_z + z]);
+                if next_x.max(next_z) >= 1 << 53 {
+                    break;
+                }
+                if next_x.min(next_z) >= 1 << 46 {
+                    #[expect(clippy::cast_precision_loss, reason = "53 bits by construction")]
+                    let [v, n] = [[next_x * g.signum(), 0, next_z], n].map(|v| v.map(|x| x as f64));
+                    decisions();
+                    check(v, n);
+                    triple += decisions()[2];
+                }
+            }
+        }
+        assert!(triple > 300, "{triple}");
+    }
+
     #[test]
     fn nearly_perpendicular_vectors_are_reflected_correctly() {
         check_class(33, |rng| {
