@@ -117,7 +117,7 @@ fn normal_sign(triangle: &Triangle, from: DVec3, to: DVec3) -> Ordering {
         .or_else(|| fixed_normal_sign::<2, 4, 6>(triangle, from, to))
         .unwrap_or_else(|| {
             let [a, b, c] = triangle.vertices;
-            let normal = cross(&difference::<VolumeInteger>(b, a), &difference(c, a));
+            let normal = cross(&difference::<Dyadic<104>>(b, a), &difference(c, a));
             dot(&normal, &difference(to, from)).sign()
         })
 }
