@@ -4,8 +4,9 @@
 //! is known far beyond its rounding.
 
 use glam::DVec3;
-use rt_math::exact::U;
-use rt_math::exact::vector::dot;
+use rt_math::exact::vector::{difference, dot};
+use rt_math::exact::{DoubleDouble, U};
+use rt_math::fma_dispatch;
 
 use super::certify::Bracket;
 use super::tangent::{SolverNumber, Tangent, Wide};
@@ -20,12 +21,12 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
     let mut tangent = Tangent::<Wide>::single(start[0]);
     for _ in 0..MAX_PIVOTS {
         // The farthest of a few first: the support of the fast path.
-        let Some(far) = farthest(&tangent, spheres, start.iter().copied()) else { break };
+        let Some(far) = farthest(&tangent, spheres, start) else { break };
         tangent.add(far, spheres);
     }
     let mut stalled = 0;
     for _ in 0..MAX_PIVOTS {
-        let Some(far) = farthest(&tangent, spheres, 0..spheres.len()) else { break };
+        let Some(far) = farthest(&tangent, spheres, &[]) else { break };
         let radius = |tangent: &Tangent<Wide>| tangent.sphere(spheres, DVec3::ZERO).1;
         let before = radius(&tangent);
         tangent.add(far, spheres);
@@ -55,27 +56,42 @@ pub(super) fn refine(spheres: &[Sphere], start: &[usize]) -> (Tangent<Wide>, Bra
     (tangent, best, bound)
 }
 
-/// The place, among `these`, of the sphere that sticks out farthest; `None` if it is of the support or does not
-/// stick out by more than a rounding error.
-fn farthest(tangent: &Tangent<Wide>, spheres: &[Sphere], these: impl Iterator<Item = usize>) -> Option<usize> {
+/// The place, among `these` (all, if these are none), of the sphere that sticks out farthest; `None` if it is of the
+/// support or does not stick out by more than a rounding error.
+fn farthest(tangent: &Tangent<Wide>, spheres: &[Sphere], these: &[usize]) -> Option<usize> {
+    farthest_of(tangent, spheres, these).filter(|index| !tangent.support().contains(index))
+}
+
+fma_dispatch! {
+    fn farthest_of(tangent: &Tangent<Wide>, spheres: &[Sphere], these: &[usize]) -> Option<usize> = farthest_kernel;
+}
+
+#[inline(always)]
+fn farthest_kernel<const FMA: bool>(tangent: &Tangent<Wide>, spheres: &[Sphere], these: &[usize]) -> Option<usize> {
     let (center, radius) = tangent.sphere(spheres, DVec3::ZERO);
-    let center = DVec3::from(center.map(SolverNumber::round));
-    let radius = radius.round();
+    let center = DVec3::new(center[0].high(), center[1].high(), center[2].high());
+    let rounded = radius.high();
     // What lies inside by more than the rounding of the center and of the reach need not be looked at closely.
     let spacing = center.abs().max_element() * (4.0 * U);
-    let limit = (radius - spacing) * (1.0 - 32.0 * U);
-    let mut most = Wide::new(radius * (16.0 * Wide::INSIDE));
+    let limit = (rounded - spacing) * (1.0 - 32.0 * U);
+    let number = |x: Wide| DoubleDouble::<FMA>::sum(x.high(), x.low());
+    let x = [number(tangent.x[0]), number(tangent.x[1]), number(tangent.x[2])];
+    let (first, radius) = (spheres[tangent.support()[0]].center(), number(radius));
+    let mut most = DoubleDouble::new(rounded * (16.0 * Wide::INSIDE));
     let mut found = None;
-    for index in these {
+    for place in 0..if these.is_empty() { spheres.len() } else { these.len() } {
+        let index = if these.is_empty() { place } else { these[place] };
         let sphere = &spheres[index];
         if (sphere.center() - center).length() + sphere.radius() >= limit {
-            let excess = tangent.excess(sphere, spheres);
-            if most.below(excess) {
+            let from = difference::<DoubleDouble<FMA>>(first, sphere.center());
+            let from = [from[0] + x[0], from[1] + x[1], from[2] + x[2]];
+            let excess = dot(&from, &from).sqrt() + (DoubleDouble::new(sphere.radius()) - radius);
+            if most.high() < excess.high() || (most.high() == excess.high() && most.low() < excess.low()) {
                 (most, found) = (excess, Some(index));
             }
         }
     }
-    found.filter(|index| !tangent.support().contains(index))
+    found
 }
 
 /// Brackets the radius that encloses all spheres around a center; where it reaches `limit`, perhaps not all. Those of
