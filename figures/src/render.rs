@@ -161,6 +161,13 @@ impl<'a> RayTile<'a> {
             self.seen.extend(met.map(|(ray, hit)| renderer.seen(ray, hit).estimated()));
             self.shaded.resize(self.seen.len(), Shaded { color: DVec3::ZERO, error: f64::INFINITY });
             phong_batch(&self.seen, lights, &mut self.shaded);
+            let met = self.rays.iter().zip(&self.hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
+            for (((ray, hit), point), shaded) in met.zip(&self.seen).zip(&mut self.shaded) {
+                // A side is open: that of a light in the plane of a surface, say.
+                if !(shaded.error < f64::INFINITY) {
+                    *shaded = renderer.seen(ray, hit).sided(point, lights);
+                }
+            }
         }
 
         self.pixels.clear();

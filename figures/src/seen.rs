@@ -18,6 +18,8 @@ use crate::scene::{DEFAULT_MATERIAL, Filter, Look, LookPlace, Paint, Scene};
 
 /// A sphere's normal that is known no better than this in doubles is asked for again at once: far balls.
 const COARSE: f64 = power_of_two(-30);
+/// And a triangle's place that is known no better than this part of its size.
+const COARSER: f64 = power_of_two(-20);
 
 /// The colour of a surface before any light falls on it.
 #[derive(Clone, Copy)]
@@ -64,9 +66,12 @@ impl<'scene, 'ray> Seen<'scene, 'ray> {
     #[inline]
     pub(crate) fn estimated(&self) -> SurfacePoint<'scene> {
         let found = self.hit.estimate();
-        if let Shape::Sphere(sphere) = self.hit.shape()
-            && found.normal_error > COARSE * sphere.radius()
-        {
+        let coarse = match self.hit.shape() {
+            Shape::Sphere(sphere) => found.normal_error > COARSE * sphere.radius(),
+            // Its normal does not depend on the point, the way to a light does: 2^-20 of the size of the triangle.
+            Shape::Triangle(triangle) => found.point_error > COARSER * triangle.size(),
+        };
+        if coarse {
             return self.placed(&found);
         }
         let Estimate { point, point_error, normal, normal_error } = found;
@@ -87,6 +92,11 @@ impl<'scene, 'ray> Seen<'scene, 'ray> {
             Coloring::Plain(color) => Some(Shaded { color, error: 0.0 }),
             _ => None,
         }
+    }
+
+    /// The colour of a point as doubles know it, with sides that are exact.
+    pub(crate) fn sided(&self, point: &SurfacePoint, lights: &[PointLight]) -> Shaded {
+        phong_with_sides(point, lights, self)
     }
 
     /// The colour from vectors that are good to a few ulp, with sides that are exact.

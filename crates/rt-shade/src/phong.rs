@@ -117,6 +117,11 @@ impl<'a> SurfacePoint<'a> {
         let (offset, errors) = (DVec3::ZERO, Errors::default());
         Self { point, offset, direction, normal, surface, material, errors }
     }
+
+    /// Whether the vectors as given are exact, so that they decide the sides.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.errors.point == 0.0 && self.errors.normal == 0.0 && self.offset == DVec3::ZERO
+    }
 }
 
 /// The vectors as given decide, if they are exact.
@@ -126,9 +131,8 @@ impl Sides for SurfacePoint<'_> {
     }
 
     fn side_of(&self, light: DVec3) -> Option<Ordering> {
-        let exact = self.errors.point == 0.0 && self.errors.normal == 0.0 && self.offset == DVec3::ZERO;
         // No side for what is not finite.
-        exact.then(|| difference_dot_sign(light, self.point, self.normal).unwrap_or(Ordering::Equal))
+        self.is_exact().then(|| difference_dot_sign(light, self.point, self.normal).unwrap_or(Ordering::Equal))
     }
 }
 
@@ -178,7 +182,7 @@ pub fn phong_with_sides(seen: &SurfacePoint, lights: &[PointLight], sides: &impl
     // The side is decided by the vectors as given: once they are rounded to length 1, a grazing view may change it.
     let (slope, slope_error) = slope(seen.direction, seen.normal, errors.normal);
     let faces_eye = if slope.abs() > slope_error { Some(slope < 0.0) } else { sides.faces_eye() };
-    let turn = if faces_eye == Some(false) { -1.0 } else { 1.0 };
+    let turn = if faces_eye.unwrap_or(slope <= 0.0) { 1.0 } else { -1.0 };
     let direction = unit(seen.direction).vector;
     let normal = unit(turn * seen.normal);
     let normal_error = relative(errors.normal, normal.inverse) + UNIT_ERROR;

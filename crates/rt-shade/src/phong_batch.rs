@@ -3,7 +3,8 @@
 //! Points go through the formulas of [`phong`] in groups of [`LANES`], operation by operation, without a branch, so
 //! that the compiler makes vector instructions of them. Every operation rounds as the same one in [`phong`] does, and
 //! so the bits are the same. What is out of the ordinary in a point (a length beyond 1e±100, an odd shininess) makes
-//! its colour NaN on the way, a side that rounding leaves open makes its error NaN, and then [`phong`] itself answers.
+//! its colour NaN on the way, a side that rounding leaves open makes its error infinite; then [`phong`] itself answers,
+//! unless the vectors are not exact, and the side stays open.
 
 use fearless_simd::Level;
 use glam::DVec3;
@@ -97,16 +98,17 @@ fn kernel(points: &[SurfacePoint], lights: &[PointLight], colors: &mut [Shaded])
         let (shaded, errors) = group(points, lights);
         for (i, (seen, color)) in points.iter().zip(colors).enumerate() {
             *color = Shaded { color: shaded.at(i), error: errors[i] };
-            // An error that is NaN comes with a side that is open, if not with a colour that is none.
-            if !(color.error < f64::INFINITY) || color.color.is_nan() || lights.is_empty() {
+            // Exact vectors decide the sides that rounding leaves open.
+            let open = !(color.error < f64::INFINITY) && seen.is_exact();
+            if open || color.color.is_nan() || lights.is_empty() {
                 *color = phong(seen, lights);
             }
         }
     }
 }
 
-/// The colours of up to [`LANES`] points, at least one, and bounds of their errors; NaN for those that [`phong`] itself
-/// has to shade.
+/// The colours of up to [`LANES`] points, at least one, and bounds of their errors: a colour that is NaN has to come from
+/// [`phong`] itself, and an error that is infinite or NaN says that a side is open.
 #[expect(clippy::needless_range_loop, reason = "a loop over lanes reads and writes many arrays alike")]
 #[inline(always)]
 fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint) {
@@ -135,13 +137,14 @@ fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint)
     let mut direction = given_direction;
     let mut normal = given_normal;
     let mut color = surface;
-    let [mut brightest_surface, mut error] = [[0.0; LANES]; 2];
+    let [mut brightest_surface, mut errors] = [[0.0; LANES]; 2];
     for i in 0..LANES {
         let (value, error) = slope(given_direction.at(i), given_normal.at(i), normal_error[i]);
         let (unit_direction, ordinary) = ordinary_unit(given_direction.at(i));
         let (unit_normal, also_ordinary) = ordinary_unit(given_normal.at(i));
         let turn = if value > 0.0 { -1.0 } else { 1.0 };
-        let turn = if (value.abs() > error) & ordinary & also_ordinary { turn } else { f64::NAN };
+        let turn = if ordinary & also_ordinary { turn } else { f64::NAN };
+        errors[i] = if value.abs() > error { 0.0 } else { f64::INFINITY };
         direction.set(i, unit_direction.vector);
         normal.set(i, turn * unit_normal.vector);
         color.set(i, ambient[i] * surface.at(i));
@@ -160,8 +163,7 @@ fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint)
             aligned[i] = alignment(direction.at(i), incident.vector, normal.at(i), cosine[i]);
             cosine_errors[i] = cosine_error(incident_error, normal_error[i]);
             alignment_errors[i] = alignment_error(incident_error, normal_error[i]);
-            // On which side the light is, must be beyond the error.
-            cosine[i] = if ordinary & (cosine[i].abs() > cosine_errors[i]) { cosine[i] } else { f64::NAN };
+            cosine[i] = if ordinary { cosine[i] } else { f64::NAN };
         }
         for i in 0..LANES {
             powers[i] = ordinary_power(clamp_but_nan(aligned[i]), shininess[i]);
@@ -174,7 +176,9 @@ fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint)
             let shiny = power_error(aligned[i], alignment_errors[i], powers[i], shininess[i]);
             let shiny = matt + specular[i] * brightest_light * shiny;
             let lit = if specular[i] == 0.0 { matt } else { shiny };
-            error[i] += if cosine[i] <= 0.0 { 0.0 } else { lit };
+            let lit = if cosine[i] <= 0.0 { 0.0 } else { lit };
+            // On which side the light is, must be beyond the error.
+            errors[i] += if cosine[i].abs() > cosine_errors[i] { lit } else { f64::INFINITY };
         }
         for axis in 0..3 {
             for i in 0..LANES {
@@ -189,9 +193,9 @@ fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint)
     }
     for i in 0..LANES {
         let rounding = sum_rounding(lights.len()) * brightest(color.at(i));
-        error[i] = 1.01 * (error[i] + rounding + ambient[i] * surface_error[i]);
+        errors[i] = 1.01 * (errors[i] + rounding + ambient[i] * surface_error[i]);
     }
-    (color, error)
+    (color, errors)
 }
 
 /// Brings a number into `0..=1`, but leaves NaN.
@@ -375,8 +379,8 @@ mod tests {
             seen(DVec3::NEG_Y, DVec3::new(1e-17, 1.0, 0.0)), // is the light above?
             seen(DVec3::new(-1.0, 1.0, 0.1), DVec3::ONE),
         ];
-        let (shaded, _) = group(&points, &lights);
-        assert_eq!([0, 1, 2].map(|i| shaded.at(i).is_nan()), [true, true, false]);
+        let (_, errors) = group(&points, &lights);
+        assert_eq!([0, 1, 2].map(|i| errors[i] < f64::INFINITY), [false, false, true]);
         let mut colors = [NOTHING; 3];
         phong_batch(&points, &lights, &mut colors);
         assert_eq!(colors.map(|shaded| shaded.color), points.map(|point| phong(&point, &lights).color));

@@ -7,7 +7,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rt_math::Roots;
 use rt_math::exact::vector::{cross, difference, dot, minus};
-use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, power_of_two, round_if_certain};
+use rt_math::exact::{DoubleDouble, Dyadic, Fixed, U, Window, bits_spanned, power_of_two, round_if_certain};
 use rt_math::fma_dispatch;
 
 use super::{Side, Sphere};
@@ -227,24 +227,39 @@ fn double_double_side(sphere: &Sphere, point: DVec3) -> Option<Ordering> {
     (in_range && excess.abs() > error).then(|| excess.total_cmp(&0.0))
 }
 
-/// Limbs for the roots. Coordinates relative to the center are multiples of 2^-1074 below 2^1025. `Delta`, of degree
-/// four, is a multiple of 2^-4296 below 2^4103: 134 limbs. To round a root takes `(2 (t + 2) - 2 b) / 64 + 2` limbs
-/// with `t = 3077` and `b = -3222`, that of twice a double times `d . d`.
-type RootInteger = Dyadic<200>;
+/// Limbs for the roots of any doubles. Coordinates relative to the center are multiples of 2^-1074 below 2^1025.
+/// `Delta`, of degree four, is a multiple of 2^-4296 below 2^4103: 134 limbs. To round a root takes
+/// `(2 (t + 2) - 2 b) / 64 + 2` limbs with `t = 3077` and `b = -3222`, that of twice a double times `d . d`.
+const ANY_LIMBS: usize = 200;
+
+/// Limbs for the roots where points and direction together span at most `NARROW_BITS`: with `s` and `q` bits,
+/// `t - b = 2 (s + q) + 62`, since a root that is not zero is at least `c / |b -+ sqrt(Delta)|`.
+const NARROW_LIMBS: usize = 24;
+const NARROW_BITS: i32 = 320;
 
 #[cold]
 #[inline(never)]
 fn integer_roots(sphere: &Sphere, ray: &Ray) -> Roots {
-    let w = difference::<RootInteger>(ray.origin(), sphere.center);
-    let d = ray.direction().to_array().map(RootInteger::from_f64);
-    let r = RootInteger::from_f64(sphere.radius);
+    let (o, c) = (ray.origin(), sphere.center);
+    let points = bits_spanned(&[o.x, o.y, o.z, c.x, c.y, c.z, sphere.radius]);
+    if points + bits_spanned(&ray.direction().to_array()) <= NARROW_BITS {
+        roots_in::<NARROW_LIMBS>(sphere, ray)
+    } else {
+        roots_in::<ANY_LIMBS>(sphere, ray)
+    }
+}
+
+fn roots_in<const LIMBS: usize>(sphere: &Sphere, ray: &Ray) -> Roots {
+    let w = difference::<Dyadic<LIMBS>>(ray.origin(), sphere.center);
+    let d = ray.direction().to_array().map(Dyadic::from_f64);
+    let r = Dyadic::from_f64(sphere.radius);
     let (a, minus_b, x) = (dot(&d, &d), -dot(&w, &d), cross(&w, &d));
-    let delta = &a * &r.square() - dot(&x, &x);
+    let delta: Dyadic<LIMBS> = &a * &r.square() - dot(&x, &x);
     match delta.sign() {
         Ordering::Less => Roots::None,
-        Ordering::Equal => Roots::One(RootInteger::quotient(&minus_b, &a)),
+        Ordering::Equal => Roots::One(Dyadic::quotient(&minus_b, &a)),
         Ordering::Greater => {
-            let root = |minus| RootInteger::root(&minus_b, minus, &delta, &a);
+            let root = |minus| Dyadic::root(&minus_b, minus, &delta, &a);
             Roots::Two(root(true), root(false))
         }
     }

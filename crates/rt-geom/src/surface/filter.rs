@@ -56,7 +56,7 @@ pub(super) fn estimate(hit: &HitPoint) -> Estimate {
         Shape::Triangle(triangle) => {
             let [a, b, c] = triangle.vertices();
             let normal = (b - a).cross(c - a);
-            let normal_error = PRODUCT_ERROR * (triangle.edge() * triangle.edge()) + UNDERFLOW;
+            let normal_error = PRODUCT_ERROR * (triangle.size() * triangle.size()) + UNDERFLOW;
             Estimate { point, point_error, normal, normal_error }
         }
     }
@@ -70,7 +70,7 @@ impl Triangle {
     #[must_use]
     pub fn estimated_weights(&self, hit: &Estimate) -> ([f64; 3], f64) {
         let [a, b, c] = self.vertices();
-        let (p, n, edge) = (hit.point - a, hit.normal, self.edge());
+        let (p, n, edge) = (hit.point - a, hit.normal, self.size());
         let square = n.length_squared();
         let [beta, gamma] = [p.cross(c - a), (b - a).cross(p)].map(|part| part.dot(n) / square);
         let length = square.sqrt();

@@ -165,7 +165,7 @@ fma_dispatch! {
 
 #[inline(always)]
 fn at_triangle_kernel<const FMA: bool>(ray: &Ray, t: f64, triangle: &Triangle) -> Option<Refined> {
-    let (d, edge) = (ray.direction(), triangle.edge());
+    let (d, edge) = (ray.direction(), triangle.size());
     let [a, b, c] = triangle.vertices();
     let far = max_abs(ray.origin()).max(max_abs(a)).max(t.abs());
     if !(far <= FARTHEST && edge <= FARTHEST && ray.reach() > 0.0) {

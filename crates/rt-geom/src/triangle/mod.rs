@@ -90,10 +90,12 @@ impl Triangle {
         self.vertices
     }
 
-    /// `E`: at least the sum over the axes of the larger component of two edges. Infinite if that is too small for the
-    /// filters' bounds.
-    #[inline(always)]
-    pub(crate) fn edge(&self) -> f64 {
+    /// The sum over the axes of the largest component of the edges, within a few ulp; infinite below `2^-150`.
+    ///
+    /// No edge from the first vertex is longer.
+    #[inline]
+    #[must_use]
+    pub fn size(&self) -> f64 {
         self.edge
     }
 
