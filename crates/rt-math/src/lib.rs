@@ -18,7 +18,7 @@ mod reflect;
 
 pub use pseudo_inverse::{PseudoInverse, pseudo_inverse, pseudo_inverse_row_sums, pseudo_inverse_with_tolerance};
 pub use quadratic::{Roots, solve_quadratic};
-pub use reflect::{reflect, reflect_if_certain};
+pub use reflect::reflect;
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -68,26 +68,6 @@ fn is_suitable(numbers: &[f64; 6]) -> bool {
     in_range && numbers.iter().fold(0, |bits, x| bits | x.to_bits()) << 38 != 0
 }
 
-/// Returns what [`reflect`] returns, and whether it is that: `false` where double-double does not decide the rounding.
-///
-/// It has no branch, so that a loop over many vectors can be compiled into vector instructions. `FMA` means the same as
-/// for [`two_prod`], and the bits do not depend on it.
-///
-/// ```
-/// use glam::DVec3;
-/// use rt_math::reflect_if_certain;
-///
-/// let (reflected, certain) = reflect_if_certain::<false>(DVec3::new(1.0, -1.0, 0.0), 5.0 * DVec3::Y);
-/// assert!(certain && reflected == DVec3::new(1.0, 1.0, 0.0));
-/// assert!(!reflect_if_certain::<false>(DVec3::X, DVec3::ZERO).1);
-/// ```
-#[inline(always)]
-#[must_use]
-pub fn reflect_if_certain<const FMA: bool>(incident: DVec3, normal: DVec3) -> (DVec3, bool) {
-    let (lower, upper, in_range) = bounds::<FMA>(incident, normal);
-    (DVec3::from_array(upper), in_range & all_equal(&lower, &upper))
-}
-
 #[inline(always)]
 fn all_equal(lower: &[f64; 3], upper: &[f64; 3]) -> bool {
     (lower[0] == upper[0]) & (lower[1] == upper[1]) & (lower[2] == upper[2])
