@@ -6,9 +6,12 @@
 
 use std::cmp::Ordering;
 
-use crate::ray::{Candidate, PreparedRay};
+use rt_math::Roots;
+
+use crate::crossings::{self, Pass};
+use crate::ray::{Candidate, PreparedRay, holds};
 use crate::simd::prefetch_lines;
-use crate::{Hit, Shape, Sphere, Triangle};
+use crate::{Hit, Ray, Shape, Side, Sphere, Triangle};
 
 /// A primitive at the leaves of a tree.
 pub(crate) trait Leaf: Copy + PartialEq + Send + Sync {
@@ -17,6 +20,28 @@ pub(crate) trait Leaf: Copy + PartialEq + Send + Sync {
 
     /// Whether the range holds a hit.
     fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool;
+
+    /// Gives the `t` of each hit in the range, in ascending order.
+    fn each_hit(&self, ray: &PreparedRay, found: impl FnMut(f64));
+
+    /// Gives each crossing of the turned ray.
+    fn each_crossing(&self, ray: &Ray, found: impl FnMut(Pass));
+
+    /// How the origin of a ray lies with regard to the surface.
+    fn surrounds(&self, ray: &Ray) -> Surrounds;
+}
+
+/// What one primitive says about a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Surrounds {
+    /// Nothing.
+    No,
+    /// The point lies on it.
+    On,
+    /// It is a sphere around the point.
+    Within,
+    /// It is a triangle that the turned ray from the point crosses.
+    Crossed,
 }
 
 impl Leaf for Sphere {
@@ -28,6 +53,35 @@ impl Leaf for Sphere {
     #[inline(always)]
     fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool {
         self.meets::<FMA>(ray)
+    }
+
+    fn each_hit(&self, ray: &PreparedRay, mut found: impl FnMut(f64)) {
+        let within = ray.within();
+        let mut root = |t| {
+            if holds(&within, t) {
+                found(t);
+            }
+        };
+        match self.roots(ray.ray) {
+            Roots::One(t) => root(t),
+            Roots::Two(near, far) => {
+                root(near);
+                root(far);
+            }
+            _ => {}
+        }
+    }
+
+    fn each_crossing(&self, ray: &Ray, found: impl FnMut(Pass)) {
+        crossings::of_sphere(self, ray).into_iter().flatten().for_each(found);
+    }
+
+    fn surrounds(&self, ray: &Ray) -> Surrounds {
+        match self.side(ray.origin()) {
+            Side::Inside => Surrounds::Within,
+            Side::On => Surrounds::On,
+            Side::Outside => Surrounds::No,
+        }
     }
 }
 
@@ -41,6 +95,28 @@ impl Leaf for Triangle {
     fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool {
         self.meets::<FMA>(ray)
     }
+
+    fn each_hit(&self, ray: &PreparedRay, mut found: impl FnMut(f64)) {
+        if let Some(t) = self.closest(ray.ray, ray.within()) {
+            found(t);
+        }
+    }
+
+    fn each_crossing(&self, ray: &Ray, mut found: impl FnMut(Pass)) {
+        if let Some(pass) = crossings::of_triangle(self, ray) {
+            found(pass);
+        }
+    }
+
+    fn surrounds(&self, ray: &Ray) -> Surrounds {
+        if self.holds(ray.origin()) {
+            Surrounds::On
+        } else if self.crosses(ray) {
+            Surrounds::Crossed
+        } else {
+            Surrounds::No
+        }
+    }
 }
 
 /// The primitives in the order of a tree: at the first *places* the spheres, then the triangles.
@@ -52,6 +128,8 @@ pub(crate) struct Leaves {
     index: Vec<u32>,
     /// The place of the primitive of each index.
     place: Vec<u32>,
+    /// The primitives that no walk meets, each after the equal one that stands for it, in ascending order.
+    twins: Vec<(u32, u32)>,
 }
 
 impl Leaves {
@@ -61,7 +139,22 @@ impl Leaves {
         for (at, &index) in index.iter().enumerate() {
             place[index as usize] = u32::try_from(at).expect("fewer than 2^32 primitives");
         }
-        Self { spheres, triangles, index, place }
+        Self { spheres, triangles, index, place, twins: Vec::new() }
+    }
+
+    /// The same with primitives that no walk meets, each after the equal one that stands for it.
+    pub(crate) fn with_twins(mut self, mut twins: Vec<(u32, u32)>) -> Self {
+        twins.sort_unstable();
+        self.twins = twins;
+        self
+    }
+
+    /// The index of the primitive at this place, and those of the equal ones for which it stands.
+    pub(crate) fn indices(&self, place: usize) -> impl Iterator<Item = usize> {
+        let index = self.index[place];
+        let start = self.twins.partition_point(|&(first, _)| first < index);
+        let twins = self.twins[start..].iter().take_while(move |&&(first, _)| first == index);
+        std::iter::once(index).chain(twins.map(|&(_, twin)| twin)).map(|index| index as usize)
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -96,7 +189,7 @@ impl Leaves {
 }
 
 /// What a walk is asked, with the answer so far.
-pub(crate) trait Query: Default {
+pub(crate) trait Query {
     type Answer: Default;
 
     /// No hit beyond this changes the answer.

@@ -1,10 +1,12 @@
 //! Spheres, triangles and the minimal bounding-sphere tree, with exact verdicts.
 
 mod bvh;
+mod crossings;
 mod enclosing;
 mod hilbert;
 mod leaf;
 mod plane;
+mod questions;
 mod ray;
 mod shape;
 mod simd;
@@ -15,8 +17,10 @@ mod surface;
 mod triangle;
 
 pub use bvh::Bvh;
+pub use crossings::Crossing;
 pub use enclosing::{Enclosing, enclosing_sphere};
 pub use plane::plane_by_pseudo_inverse;
+pub use questions::{AHEAD, List, OpenEdge, open_edges};
 pub use ray::Ray;
 pub use shape::{Hit, Shape, Visits};
 pub use sphere::{Side, Sphere};

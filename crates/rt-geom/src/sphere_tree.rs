@@ -379,7 +379,7 @@ fn walk_any<const FMA: bool>(tree: &SphereTree, ray: &Ray, start: f64, end: f64)
 }
 
 #[inline(always)]
-fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f64>) -> (Q::Answer, Visits) {
+fn walk<const FMA: bool, Q: Query + Default>(tree: &SphereTree, ray: &Ray, within: Range<f64>) -> (Q::Answer, Visits) {
     let mut visits = Visits::default();
     if !is_open(&within) || tree.is_empty() {
         return (Q::Answer::default(), visits);

@@ -44,7 +44,7 @@ struct Stacks {
     nodes: Vec<u32>,
 }
 
-impl<'a, Q: Query> Slot<'a, Q> {
+impl<'a, Q: Query + Default> Slot<'a, Q> {
     fn new(ray: &'a Ray, within: &Range<f64>, base: usize) -> Self {
         Self {
             line: CullRay::EVERYTHING,
@@ -96,7 +96,7 @@ struct Survivors {
 
 /// Answers a query for all rays.
 #[inline(always)]
-pub(super) fn fly<S: Simd, Q: Query>(
+pub(super) fn fly<S: Simd, Q: Query + Default>(
     simd: S,
     tree: &Bvh,
     rays: &[Ray],
@@ -183,7 +183,7 @@ pub(super) fn fly<S: Simd, Q: Query>(
 
 /// Puts the next ray that may meet anything into the slot; `false` if none is left.
 #[inline(always)]
-fn launch<'a, S: Simd, Q: Query>(
+fn launch<'a, S: Simd, Q: Query + Default>(
     simd: S,
     slot: &mut Slot<'a, Q>,
     root: Child,
@@ -248,7 +248,7 @@ impl Survivors {
 
     /// Hands all to the queries of their slots. A slot's survivors follow each other.
     #[inline(always)]
-    fn meet<S: Simd, Q: Query, L: Blocked>(&mut self, simd: S, tree: &Bvh, slots: &mut [Slot<Q>]) {
+    fn meet<S: Simd, Q: Query + Default, L: Blocked>(&mut self, simd: S, tree: &Bvh, slots: &mut [Slot<Q>]) {
         let len = std::mem::take(&mut self.len);
         for i in 0..len {
             let (place, at) = (self.places[i] as usize, self.slots[i] as usize);

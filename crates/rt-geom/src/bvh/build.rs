@@ -30,6 +30,8 @@ pub(super) struct Trunk {
     pub(super) nodes: Vec<Node>,
     /// The index of the primitive at each place.
     pub(super) index: Vec<u32>,
+    /// The primitives that no leaf block bounds, each after the equal one that stands for it.
+    pub(super) twins: Vec<(u32, u32)>,
     parts: Vec<(Collapsed, Branch)>,
 }
 
@@ -48,11 +50,15 @@ impl Trunk {
             self.parts.push((collapse(&branches, L::KIND, &mut self.nodes), whole));
         }
         drop(branches);
-        self.index.extend(items.iter().map(|item| item.index() + number(first)));
+        let first = number(first);
+        self.index.extend(items.iter().map(|item| item.index() + first));
+        self.twins.extend(items.iter().filter_map(|item| Some((item.twin_of()? + first, item.index() + first))));
         let sorted: Vec<L> = items.par_iter().map(|item| leaves[item.index() as usize]).collect();
         let block = |(leaves, items): (&[L], &[Item])| {
             let mut block = L::Block::EMPTY;
-            for (lane, (leaf, _)) in leaves.iter().zip(items).enumerate().filter(|(_, (_, item))| !item.is_twin()) {
+            for (lane, (leaf, _)) in
+                leaves.iter().zip(items).enumerate().filter(|(_, (_, item))| item.twin_of().is_none())
+            {
                 block.bound(lane, leaf, frame);
             }
             block
@@ -82,8 +88,8 @@ impl Trunk {
     }
 }
 
-/// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` whether it is a twin; no arithmetic uses
-/// that lane's value.
+/// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` that of the primitive whose twin it is; no
+/// arithmetic uses that lane's value.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     low: Vec4,
@@ -91,18 +97,24 @@ struct Item {
 }
 
 impl Item {
+    const NO_TWIN: u32 = u32::MAX;
+
     fn new(low: [f32; 3], high: [f32; 3], index: u32) -> Self {
         let [x, y, z] = low;
-        Self { low: Vec4::new(x, y, z, f32::from_bits(index)), high: Vec4::new(high[0], high[1], high[2], 0.0) }
+        Self {
+            low: Vec4::new(x, y, z, f32::from_bits(index)),
+            high: Vec4::new(high[0], high[1], high[2], f32::from_bits(Self::NO_TWIN)),
+        }
     }
 
     fn index(&self) -> u32 {
         self.low.w.to_bits()
     }
 
-    /// Whether a primitive of lower index, in the same part of the tree, is equal to this one.
-    fn is_twin(&self) -> bool {
-        self.high.w > 0.0
+    /// The lowest index of a primitive in the same part of the tree that is equal to this one, if it is not its own.
+    fn twin_of(&self) -> Option<u32> {
+        let first = self.high.w.to_bits();
+        (first != Self::NO_TWIN).then_some(first)
     }
 
     /// Twice the center.
@@ -239,13 +251,16 @@ fn part_twins(items: &mut [Item], order: Order) -> usize {
     let compare = |a: &Item, b: &Item| order(a.index(), b.index());
     items.par_sort_unstable_by(|a, b| compare(a, b).then(a.index().cmp(&b.index())));
     let mut twins = 0;
+    let mut first = items[0].index();
     for i in 1..items.len() {
         if compare(&items[i - 1], &items[i]).is_eq() {
-            items[i].high.w = 1.0;
+            items[i].high.w = f32::from_bits(first);
             twins += 1;
+        } else {
+            first = items[i].index();
         }
     }
-    partition(items, |item| !item.is_twin());
+    partition(items, |item| item.twin_of().is_none());
     items.len() - twins
 }
 

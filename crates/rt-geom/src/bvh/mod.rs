@@ -58,7 +58,7 @@ impl Bvh {
         let (spheres, sphere_blocks) = trunk.plant(spheres, &frame);
         let (triangles, triangle_blocks) = trunk.plant(triangles, &frame);
         let (root, stack) = trunk.join();
-        let leaves = Leaves::new(spheres, triangles, trunk.index);
+        let leaves = Leaves::new(spheres, triangles, trunk.index).with_twins(trunk.twins);
         let nodes = trunk.nodes;
         Self { leaves, nodes, sphere_blocks, triangle_blocks, root, frame, stack, level: Level::new() }
     }
@@ -73,6 +73,10 @@ impl Bvh {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    pub(crate) fn triangle_count(&self) -> usize {
+        self.leaves.triangles.len()
     }
 
     /// Returns the primitive with this index: spheres as listed, then triangles as listed.
@@ -107,20 +111,20 @@ impl Bvh {
     /// Returns the closest hit with its `t` in the range: the smallest `t`, and of equal `t` the lowest index.
     #[must_use]
     pub fn closest(&self, ray: &Ray, within: Range<f64>) -> Option<Hit> {
-        self.query::<Closest>(ray, within, &mut Visits::default())
+        self.query(ray, within, Closest::default(), &mut Visits::default())
     }
 
     /// As [`closest`](Self::closest), with what the query did.
     #[must_use]
     pub fn closest_counted(&self, ray: &Ray, within: Range<f64>) -> (Option<Hit>, Visits) {
         let mut visits = Visits::default();
-        (self.query::<Closest>(ray, within, &mut visits), visits)
+        (self.query(ray, within, Closest::default(), &mut visits), visits)
     }
 
     /// Returns whether anything is hit with its `t` in the range.
     #[must_use]
     pub fn any(&self, ray: &Ray, within: Range<f64>) -> bool {
-        self.query::<Any>(ray, within, &mut Visits::default())
+        self.query(ray, within, Any::default(), &mut Visits::default())
     }
 
     /// Writes the closest hit of each ray.
@@ -140,15 +144,15 @@ impl Bvh {
     }
 
     #[inline(never)]
-    fn query<Q: Query>(&self, ray: &Ray, within: Range<f64>, visits: &mut Visits) -> Q::Answer {
+    pub(crate) fn query<Q: Query>(&self, ray: &Ray, within: Range<f64>, query: Q, visits: &mut Visits) -> Q::Answer {
         if !is_open(&within) {
             return Q::Answer::default();
         }
-        dispatch!(self.level, simd => cast::<_, Q>(simd, self, ray, within.clone(), visits))
+        dispatch!(self.level, simd => cast::<_, Q>(simd, self, ray, within.clone(), query, visits))
     }
 
     #[inline(never)]
-    fn batch<Q: Query>(&self, rays: &[Ray], within: &Range<f64>, answers: &mut [Q::Answer]) {
+    fn batch<Q: Query + Default>(&self, rays: &[Ray], within: &Range<f64>, answers: &mut [Q::Answer]) {
         assert_eq!(rays.len(), answers.len(), "one place for the answer to each ray");
         if !is_open(within) {
             answers.fill_with(Q::Answer::default);

@@ -57,6 +57,7 @@ pub(super) fn cast<S: Simd, Q: Query>(
     tree: &Bvh,
     ray: &Ray,
     within: Range<f64>,
+    mut query: Q,
     visits: &mut Visits,
 ) -> Q::Answer {
     let prepared = PreparedRay::new(ray, within);
@@ -75,7 +76,6 @@ pub(super) fn cast<S: Simd, Q: Query>(
         large = vec![0; tree.stack];
         &mut large[..]
     };
-    let mut query = Q::default();
     walk(simd, tree, &prepared, &mut query, &mut line, stack, visits);
     query.answer(&tree.leaves, &prepared)
 }

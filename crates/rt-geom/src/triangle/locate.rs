@@ -101,6 +101,27 @@ impl Triangle {
     }
 }
 
+impl Triangle {
+    /// Whether a point lies in the closed triangle, exactly: in its plane, and not outside of it.
+    ///
+    /// A triangle without area holds nothing, and a point that is not finite lies nowhere.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rt_geom::Triangle;
+    ///
+    /// let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
+    /// assert!(triangle.holds(DVec3::new(0.5, 0.5, 0.0)) && !triangle.holds(DVec3::new(0.5, 0.5, 1e-300)));
+    /// ```
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        let [a, b, c] = self.vertices();
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let near = point.cmpge(low).all() && point.cmple(high).all();
+        near && self.is_coplanar(point) && inside_triangle(point, self) != Inside::Outside
+    }
+}
+
 /// The largest component among the edges, and among those of the point's differences from the vertices.
 fn sizes(point: DVec3, triangle: &Triangle) -> (f64, f64) {
     let [a, b, c] = triangle.vertices();

@@ -1,0 +1,295 @@
+//! What a mesh is asked: every hit in order, crossings that alternate, and inside or outside; from the tree as from the
+//! plain list.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use oracle::{Random, cases, dot, sign, sub, vector};
+use rt_geom::{AHEAD, Bvh, Crossing, Hit, List, Ray, Side, Sphere, Triangle, open_edges};
+
+/// How many rays or points the long run has.
+const LONG: usize = 1_000_000;
+
+/// An octahedron, each face cut in four `depth` times, with its vertices brought to the sphere of this radius: closed,
+/// its normals outward.
+fn ball_mesh(depth: u32, radius: f64, center: DVec3) -> Vec<Triangle> {
+    let mut vertices = vec![DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+    let mut faces = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
+    for _ in 0..depth {
+        let mut middles = HashMap::new();
+        let mut middle = |a: usize, b: usize| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                vertices.push((vertices[a] + vertices[b]).normalize());
+                vertices.len() - 1
+            })
+        };
+        faces = faces
+            .iter()
+            .flat_map(|&[a, b, c]| {
+                let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    let place = |i: usize| center + radius * vertices[i];
+    faces.iter().map(|&[a, b, c]| Triangle::new(place(a), place(b), place(c)).unwrap()).collect()
+}
+
+/// The cube from -1 to 1, two triangles a face, its normals outward.
+fn cube() -> Vec<Triangle> {
+    let corner = |i: usize| DVec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -1.0 } else { 1.0 }));
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let halves = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    halves.map(|ends| ends.map(corner)).map(|[a, b, c]| Triangle::new(a, b, c).unwrap()).collect()
+}
+
+/// A place of a triangle: a vertex, in an edge, or in the interior, as near as doubles come.
+fn place(triangle: &Triangle, random: &mut Random) -> DVec3 {
+    let [a, b, c] = triangle.vertices();
+    match random.below(3) {
+        0 => a,
+        1 => 0.5 * (a + b),
+        _ => a + random.share() * 0.5 * (b - a) + random.share() * 0.5 * (c - a),
+    }
+}
+
+/// A scene of spheres and triangles, some of them equal.
+fn scene(random: &mut Random) -> List {
+    let grid = |random: &mut Random| DVec3::from_array([0, 1, 2].map(|_| f64::from(random.integer(-4..5))));
+    let mut list = List::default();
+    for _ in 0..40 {
+        let radius = [0.0, 1.0, 2.0, 0.5][random.below(4)];
+        list.spheres.push(Sphere::new(grid(random), radius).unwrap());
+        let [a, b, c] = [grid(random), grid(random), grid(random)];
+        list.triangles.push(Triangle::new(a, b, c).unwrap());
+    }
+    for _ in 0..40 {
+        list.spheres.push(list.spheres[random.below(3)]);
+        list.triangles.push(list.triangles[random.below(3)]);
+    }
+    list
+}
+
+#[test]
+fn the_tree_answers_as_the_list_does() {
+    let random = &mut Random::new(1);
+    let (mut hits, mut crossings, mut sides) = (0, 0, [0; 3]);
+    for i in 0..cases(LONG) / 50 {
+        let list = scene(random);
+        let tree = Bvh::new(list.spheres.clone(), list.triangles.clone());
+        let (mut found, mut expected) = (Vec::new(), Vec::new());
+        let (mut passed, mut expected_passes) = (Vec::new(), Vec::new());
+        for _ in 0..50 {
+            let whole = |random: &mut Random| DVec3::from_array([0, 1, 2].map(|_| f64::from(random.integer(-9..10))));
+            let origin = if random.one_in(2) { whole(random) } else { 9.0 * random.point() };
+            let direction = if i % 2 == 0 { whole(random) } else { random.point() };
+            let Some(ray) = Ray::new(origin, direction) else { continue };
+            let within = [AHEAD, f64::NEG_INFINITY..f64::INFINITY, 0.5..2.0, 3.0..1.0][random.below(4)].clone();
+            tree.hits(&ray, within.clone(), &mut found);
+            list.hits(&ray, within.clone(), &mut expected);
+            assert_eq!(found, expected, "{ray:?} in {within:?}");
+            assert_eq!(found.first().copied(), tree.closest(&ray, within.clone()), "{ray:?} in {within:?}");
+            assert_eq!(found.first().copied(), list.closest(&ray, within.clone()));
+            tree.crossings(&ray, &mut passed);
+            list.crossings(&ray, &mut expected_passes);
+            assert_eq!(passed, expected_passes, "{ray:?}");
+            let side = tree.contains(origin);
+            assert_eq!(side, list.contains(origin), "{origin:?}");
+            hits += found.len();
+            crossings += passed.len();
+            sides[side as usize] += 1;
+        }
+        assert_eq!(tree.open_edges(), open_edges(&list.triangles));
+    }
+    assert!(hits > 1000 && crossings > 1000 && sides.iter().all(|&n| n > 100), "{hits} {crossings} {sides:?}");
+}
+
+#[test]
+fn a_sphere_gives_both_roots_and_a_tangent_one() {
+    let list = List { spheres: vec![Sphere::new(DVec3::ZERO, 1.0).unwrap()], triangles: vec![] };
+    let hits = |y: f64, within| {
+        let mut hits = Vec::new();
+        list.hits(&Ray::new(DVec3::new(-2.0, y, 0.0), DVec3::X).unwrap(), within, &mut hits);
+        hits
+    };
+    let hit = |t| Hit { index: 0, t };
+    assert_eq!(hits(0.0, AHEAD), [hit(1.0), hit(3.0)]);
+    assert_eq!(hits(0.0, 1.5..9.0), [hit(3.0)]);
+    assert_eq!(hits(1.0, AHEAD), [hit(2.0)]);
+    assert_eq!(hits(1f64.next_up(), AHEAD), []);
+}
+
+#[test]
+fn a_tangent_is_turned_into_the_sphere_or_past_it() {
+    let tree = Bvh::new(vec![Sphere::new(DVec3::ZERO, 1.0).unwrap()], vec![]);
+    let crossings = |origin: DVec3, direction: DVec3| {
+        let mut crossings = Vec::new();
+        tree.crossings(&Ray::new(origin, direction).unwrap(), &mut crossings);
+        crossings.iter().map(|&Crossing { t, entering, .. }| (t, entering)).collect::<Vec<_>>()
+    };
+    // Along y the ray is turned towards +x and +z: from x = 1 away from the sphere, from x = -1 into it.
+    assert_eq!(crossings(DVec3::new(1.0, -2.0, 0.0), DVec3::Y), []);
+    assert_eq!(crossings(DVec3::new(-1.0, -2.0, 0.0), DVec3::Y), [(2.0, true), (2.0, false)]);
+    // From the surface itself: the other root is infinitely near, ahead or behind.
+    assert_eq!(crossings(DVec3::X, DVec3::Y), []);
+    assert_eq!(crossings(DVec3::NEG_X, DVec3::Y), [(0.0, false)]);
+    assert_eq!(crossings(DVec3::NEG_X, DVec3::X), [(2.0, false)]);
+    assert_eq!(crossings(DVec3::NEG_X, DVec3::NEG_X), []);
+}
+
+/// Checks that what a ray crosses is properly nested: a stack of surfaces, of which each is left as the last one entered.
+fn check_nested(crossings: &[Crossing], surface: impl Fn(usize) -> usize, around: &[usize], ray: &Ray) {
+    let mut inside: Vec<usize> = around.to_vec();
+    for &Crossing { index, t, entering } in crossings {
+        let surface = surface(index);
+        if entering {
+            assert!(!inside.contains(&surface), "{surface} is entered twice, at {t:e} of {ray:?}: {crossings:?}");
+            inside.push(surface);
+        } else {
+            assert_eq!(inside.pop(), Some(surface), "at {t:e} of {ray:?}: {crossings:?}");
+        }
+    }
+    assert!(inside.is_empty(), "{ray:?} ends in {inside:?}: {crossings:?}");
+}
+
+#[test]
+fn lines_through_nested_surfaces_are_properly_nested() {
+    let random = &mut Random::new(3);
+    // A mesh in a mesh in a sphere, all around the origin; the outer two are near each other.
+    let (inner, outer) = (ball_mesh(2, 1.0, DVec3::ZERO), ball_mesh(3, 2.0, DVec3::ZERO));
+    let spheres = vec![Sphere::new(DVec3::ZERO, 2.0 + 1e-9).unwrap()];
+    let triangles: Vec<Triangle> = inner.iter().chain(&outer).copied().collect();
+    assert!(open_edges(&triangles).is_empty());
+    let tree = Bvh::new(spheres, triangles.clone());
+    let surface = |index: usize| match index {
+        0 => 2,
+        i if i <= inner.len() => 0,
+        _ => 1,
+    };
+    let mut crossings = Vec::new();
+    let mut total = 0;
+    for i in 0..10 * cases(LONG / 10) {
+        let aim = place(&triangles[random.below(triangles.len())], random);
+        let direction = match i % 4 {
+            // To a vertex, an edge or a face; along an edge; along an axis; from far away.
+            0 | 3 => random.point(),
+            1 => {
+                let [a, b, _] = triangles[random.below(triangles.len())].vertices();
+                b - a
+            }
+            _ => [DVec3::X, DVec3::Y, DVec3::Z][random.below(3)],
+        };
+        let (origin, around): (DVec3, &[usize]) = match i % 5 {
+            0 => (DVec3::ZERO, &[2, 1, 0]),
+            1 => (1.5 * random.direction(), &[2, 1]),
+            2 => (aim - 1e6 * direction, &[]),
+            _ => (aim - 8.0 * direction.normalize(), &[]),
+        };
+        let towards = if i % 5 < 2 && i % 4 == 0 { aim - origin } else { direction };
+        let Some(ray) = Ray::new(origin, towards) else { continue };
+        tree.crossings(&ray, &mut crossings);
+        check_nested(&crossings, surface, around, &ray);
+        total += crossings.len();
+    }
+    assert!(total > 10 * cases(LONG / 10), "{total}");
+}
+
+#[test]
+fn points_beside_faces_are_inside_or_outside_exactly() {
+    let random = &mut Random::new(4);
+    let mut counts = [0; 3];
+    for offset in [0.0, 4e5, 5e6] {
+        let center = DVec3::splat(offset);
+        let triangles = ball_mesh(3, 1.0, center);
+        let tree = Bvh::new(vec![], triangles.clone());
+        for i in 0..cases(LONG) / 3 {
+            let triangle = &triangles[random.below(triangles.len())];
+            let normal = triangle.normal().unwrap();
+            let distance = [0.0, random.power(-44..-24), -random.power(-44..-24)][i % 3];
+            let point = place(triangle, random) + distance * normal;
+            // The mesh is convex but for rounding: a point surely within or beyond every plane but its neighbours'
+            // is judged by three other directions, with the rule that counts every crossing once.
+            let parity = |direction: DVec3| {
+                let ray = Ray::new(point, direction).unwrap();
+                triangles.iter().filter(|triangle| triangle.crosses(&ray)).count() % 2 == 1
+            };
+            let on = triangles.iter().any(|triangle| {
+                let [a, b, c] = triangle.vertices().map(vector);
+                let (e, f, p) = (sub(&b, &a), sub(&c, &a), sub(&vector(point), &a));
+                let near = (point - triangle.vertices()[0]).length() < 1.0;
+                near && sign(&dot(&oracle::cross(&e, &f), &p)).is_eq() && triangle.holds(point)
+            });
+            let side = tree.contains(point);
+            counts[side as usize] += 1;
+            assert_eq!(side == Side::On, on, "{point:?} at {offset:e}");
+            if !on && i % 16 == 0 {
+                let inside = [DVec3::X, random.point(), random.point()].map(parity);
+                assert_eq!(inside, [side == Side::Inside; 3], "{point:?} at {offset:e}");
+            }
+        }
+    }
+    assert!(counts.iter().all(|&n| n > 100), "{counts:?}");
+}
+
+#[test]
+fn a_cube_contains_what_lies_between_its_faces() {
+    let random = &mut Random::new(5);
+    let tree = Bvh::new(vec![], cube());
+    let mut counts = [0; 3];
+    for _ in 0..cases(LONG) {
+        let number = |random: &mut Random| {
+            let near = [1.0, 1f64.next_up(), 1f64.next_down(), 0.0, 0.5, 2.0][random.below(6)];
+            near * random.sign()
+        };
+        let point = DVec3::from_array([0; 3].map(|_| number(random)));
+        let reach = point.abs().max_element();
+        let expected = match reach.partial_cmp(&1.0).unwrap() {
+            std::cmp::Ordering::Less => Side::Inside,
+            std::cmp::Ordering::Equal => Side::On,
+            std::cmp::Ordering::Greater => Side::Outside,
+        };
+        assert_eq!(tree.contains(point), expected, "{point:?}");
+        counts[expected as usize] += 1;
+    }
+    assert!(counts.iter().all(|&n| n > 100), "{counts:?}");
+    assert_eq!(tree.contains(DVec3::NAN), Side::Outside);
+}
+
+#[test]
+fn batches_answer_as_single_questions_do() {
+    let random = &mut Random::new(6);
+    let list = scene(random);
+    let tree = Bvh::new(list.spheres.clone(), list.triangles.clone());
+    let rays: Vec<Ray> = (0..200).map(|_| Ray::new(9.0 * random.point(), random.point()).unwrap()).collect();
+    let points: Vec<DVec3> = (0..200).map(|_| 5.0 * random.point()).collect();
+    let (mut hits, mut crossings) = (vec![Vec::new(); 200], vec![Vec::new(); 200]);
+    let mut sides = vec![Side::On; 200];
+    tree.hits_batch(&rays, AHEAD, &mut hits);
+    tree.crossings_batch(&rays, &mut crossings);
+    tree.contains_batch(&points, &mut sides);
+    let (mut one, mut pass) = (Vec::new(), Vec::new());
+    for (i, ray) in rays.iter().enumerate() {
+        tree.hits(ray, AHEAD, &mut one);
+        tree.crossings(ray, &mut pass);
+        assert_eq!((&hits[i], &crossings[i], sides[i]), (&one, &pass, tree.contains(points[i])));
+    }
+}
+
+#[test]
+fn a_hole_has_its_edges() {
+    let mut triangles = ball_mesh(2, 1.0, DVec3::ZERO);
+    assert!(open_edges(&triangles).is_empty());
+    let taken = triangles.remove(7);
+    let open = open_edges(&triangles);
+    let mut ends: Vec<[DVec3; 2]> = open.iter().map(|edge| edge.ends).collect();
+    assert_eq!(ends.len(), 3);
+    let [a, b, c] = taken.vertices();
+    ends.retain(|&[p, q]| ![[a, b], [b, c], [c, a]].iter().any(|&[x, y]| [p, q] == [x, y] || [p, q] == [y, x]));
+    assert!(ends.is_empty(), "{open:?}");
+    // A triangle without area closes nothing, and -0 is 0.
+    triangles.push(Triangle::new(a, a, b).unwrap());
+    assert_eq!(open_edges(&triangles).len(), 3);
+    let negative_zeros = |v: DVec3| DVec3::from_array(v.to_array().map(|x| if x == 0.0 { -0.0 } else { x }));
+    triangles.push(Triangle::new(a, negative_zeros(b), c).unwrap());
+    assert!(open_edges(&triangles).is_empty());
+}
