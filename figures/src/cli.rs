@@ -15,7 +15,7 @@ use crate::generate::{ColoredBall, Rule};
 use crate::options::{Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
 use crate::output::{self, Format, Target};
-use crate::{convert, draw, generate, memory};
+use crate::{ask, convert, draw, generate, memory};
 
 #[derive(Parser)]
 #[command(
@@ -81,6 +81,29 @@ enum Command {
         /// Where to: .xyz, .toml or .obj, or `-` for stdout
         #[arg(short, long, value_name = "FILE|-", default_value = "-", global = true)]
         out: PathBuf,
+    },
+    /// Ask a mesh: is a point inside, what does a ray hit, all of it, in order
+    #[command(
+        after_help = "Answers come one a line, in the order of the questions: `inside`, `on` or `outside`; or the \
+                            hits of a ray, each an index and a t. With --json one object a line, with the crossings \
+                            of closed surfaces too."
+    )]
+    #[command(group(clap::ArgGroup::new("question").required(true)))]
+    Ask {
+        /// A mesh in OBJ, spheres in XYZ, or a scene in TOML
+        mesh: PathBuf,
+        /// Points, three numbers a line, or an XYZ file; `-` for stdin
+        #[arg(long, value_name = "FILE|-", group = "question")]
+        contains: Option<PathBuf>,
+        /// Rays, six numbers a line: origin and direction; `-` for stdin
+        #[arg(long, value_name = "FILE|-", group = "question")]
+        rays: Option<PathBuf>,
+        /// Answer in JSON lines
+        #[arg(long)]
+        json: bool,
+        /// Write no warnings
+        #[arg(long)]
+        quiet: bool,
     },
     /// Count what a ray costs in a scene: by a loop, by the report's tree, and by the fast one
     Tests {
@@ -154,7 +177,7 @@ pub fn main() -> ExitCode {
 fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.command {
         None => {
-            let which = arguments.figure.map_or_else(ask, Ok)?;
+            let which = arguments.figure.map_or_else(ask_for_figure, Ok)?;
             match which {
                 Which::One(figure) => draw::figures(&[*figure], false, &arguments.options),
                 Which::All => draw::figures(&FIGURES, true, &arguments.options),
@@ -170,6 +193,14 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         }
         Some(Command::Merge { output, tiles, format }) => draw::merge(&output, &tiles, format),
         Some(Command::Gen { piece, out }) => piece.write(&out),
+        Some(Command::Ask { mesh, contains, rays, json, quiet }) => {
+            let style = ask::Style { json, quiet };
+            match (contains, rays) {
+                (Some(points), _) => ask::contains(&mesh, &points, style),
+                (None, Some(rays)) => ask::rays(&mesh, &rays, style),
+                (None, None) => Err(Failure::Usage("ask with --contains or --rays".to_owned())),
+            }
+        }
         Some(Command::Tests { scene, size }) => draw::count_tests(&scene, size),
         Some(Command::Report { rest }) => Err(Failure::Usage(format!(
             "the report is a program of its own: `cargo run --release -p report{}`",
@@ -210,7 +241,7 @@ impl SetPiece {
 }
 
 /// Asks for the number of the figure, as the original program did.
-fn ask() -> Result<Which, Failure> {
+fn ask_for_figure() -> Result<Which, Failure> {
     let stdin = io::stdin();
     if stdin.is_terminal() {
         let _ = write!(io::stderr(), "Which figure, 1 to 6? ");

@@ -85,7 +85,7 @@ pub fn scene_file(path: &Path, options: &DrawOptions) -> Result<(), Failure> {
 }
 
 /// Reads a scene file, or a bulk file on a stage.
-fn load(path: &Path) -> Result<Scene, Failure> {
+pub(crate) fn load(path: &Path) -> Result<Scene, Failure> {
     match import::load(path) {
         Some(scene) => Ok(scene?),
         None => Ok(scene_file::load(path)?),

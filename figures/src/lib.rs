@@ -16,6 +16,7 @@
 //! # Ok::<(), figures::scene_file::SceneError>(())
 //! ```
 
+pub mod ask;
 mod assets;
 pub mod camera;
 pub mod certify;

@@ -16,6 +16,7 @@ use crate::scene::{Look, Scene};
 use crate::text::file_name;
 use problem::FileProblem;
 pub use problem::ImportError;
+pub(crate) use words::{decimal, shown};
 
 /// Reads a bulk file into a scene with a camera, lights and colours of its own; `None` if `path` is that of a scene
 /// file.

@@ -19,6 +19,11 @@ impl<'a> Iterator for Words<'a> {
     }
 }
 
+/// Reads a number as [`number`] does; `None` for what is none.
+pub(crate) fn decimal(word: &[u8]) -> Option<f64> {
+    number(word).ok()
+}
+
 /// Reads a number, rounded once to the nearest double.
 pub(super) fn number(word: &[u8]) -> Result<f64, LineProblem> {
     short_decimal(word)
@@ -59,7 +64,7 @@ fn short_decimal(word: &[u8]) -> Option<f64> {
 }
 
 /// What was found, for a message; long text is cut.
-pub(super) fn shown(bytes: &[u8]) -> String {
+pub(crate) fn shown(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]);
     let text = text.trim();
     match text.char_indices().nth(40) {
