@@ -19,6 +19,8 @@ mod triangle;
 pub use bvh::Bvh;
 pub use crossings::Crossing;
 pub use enclosing::{Enclosing, enclosing_sphere};
+/// The vectors of every signature: another version of the crate has other types.
+pub use glam;
 pub use plane::plane_by_pseudo_inverse;
 pub use questions::{AHEAD, List, OpenEdge, open_edges};
 pub use ray::Ray;

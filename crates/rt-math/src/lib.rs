@@ -16,6 +16,8 @@ mod pseudo_inverse;
 mod quadratic;
 mod reflect;
 
+/// The vectors of every signature: another version of the crate has other types.
+pub use glam;
 pub use pseudo_inverse::{PseudoInverse, pseudo_inverse, pseudo_inverse_row_sums, pseudo_inverse_with_tolerance};
 pub use quadratic::{Roots, solve_quadratic};
 pub use reflect::reflect;

@@ -33,6 +33,44 @@ pub enum Roots {
     All,
 }
 
+impl Roots {
+    /// Returns the smallest root that is positive; `None` if there is none, or if every number is a root.
+    ///
+    /// A root that is positive and rounds to +0.0 does not count.
+    ///
+    /// ```
+    /// use rt_math::solve_quadratic;
+    ///
+    /// assert_eq!(solve_quadratic(1.0, -1.0, -6.0).smallest_positive(), Some(3.0)); // of -2 and 3
+    /// assert_eq!(solve_quadratic(1.0, 3.0, 2.0).smallest_positive(), None);
+    /// ```
+    #[must_use]
+    pub fn smallest_positive(self) -> Option<f64> {
+        self.into_iter().find(|&root| root > 0.0)
+    }
+}
+
+/// The one or two numbers, in ascending order; none of [`Roots::All`], which names none.
+///
+/// ```
+/// use rt_math::solve_quadratic;
+///
+/// assert_eq!(solve_quadratic(2.0, 0.0, -8.0).into_iter().sum::<f64>(), 0.0);
+/// ```
+impl IntoIterator for Roots {
+    type Item = f64;
+    type IntoIter = core::iter::Flatten<core::array::IntoIter<Option<f64>, 2>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        let roots = match self {
+            Self::None | Self::All => [None, None],
+            Self::One(root) => [Some(root), None],
+            Self::Two(first, second) => [Some(first), Some(second)],
+        };
+        roots.into_iter().flatten()
+    }
+}
+
 fma_dispatch! {
     /// Returns the real roots of `a x² + b x + c`, in ascending order.
     ///

@@ -17,12 +17,14 @@ use glam::DVec3;
 /// let red_green_blue = [DVec3::X, DVec3::Y, DVec3::Z];
 /// assert_eq!(interpolate(&red_green_blue, [0.5, 0.25, 0.25]), DVec3::new(0.5, 0.25, 0.25));
 /// ```
+#[must_use]
 pub fn interpolate(colors: &[DVec3; 3], barycentric: [f64; 3]) -> DVec3 {
     let [alpha, beta, gamma] = barycentric;
     colors[0] * alpha + colors[1] * beta + colors[2] * gamma
 }
 
 /// Returns the colour with each channel brought into `0..=1`; NaN becomes 0, an infinity the end on its side.
+#[must_use]
 pub fn clamp(color: DVec3) -> DVec3 {
     DVec3::from_array(color.to_array().map(clamp_channel))
 }
@@ -40,6 +42,7 @@ pub fn clamp(color: DVec3) -> DVec3 {
 /// assert_eq!((to_sample(0.7, 255), 255.0 * 0.7), (178, 178.5));
 /// ```
 #[inline]
+#[must_use]
 pub fn to_sample(c: f64, maxval: u16) -> u16 {
     let c = clamp_channel(c);
     // Two roundings, neither of which passes a half or a whole number: they may lift a sample just below a half onto

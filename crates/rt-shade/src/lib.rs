@@ -25,6 +25,8 @@ mod phong_batch;
 mod power;
 mod texture;
 
+/// The vectors of every signature: another version of the crate has other types.
+pub use glam;
 pub use mapping::{sphere_uv, texture_uv, texture_uv_within};
 pub use phong::{Errors, Material, PointLight, Shaded, Sides, SurfacePoint, phong, phong_with_sides};
 pub use phong_batch::phong_batch;

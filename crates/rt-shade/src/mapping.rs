@@ -45,6 +45,7 @@ use crate::power::power_of_two;
 /// assert_eq!(sphere_uv(DVec3::new(3.0, 0.0, -3.0)), (0.375, 0.5));
 /// ```
 #[inline]
+#[must_use]
 pub fn sphere_uv(normal: DVec3) -> (f64, f64) {
     let DVec3 { x, y, z } = normal;
     if [x, y, z].into_iter().all(is_moderate) {
@@ -67,6 +68,7 @@ pub fn sphere_uv(normal: DVec3) -> (f64, f64) {
 /// assert_eq!(texture_uv(normal, true), (0.625, 0.5));
 /// assert_eq!(texture_uv(normal, false), (0.375, 0.5));
 /// ```
+#[must_use]
 pub fn texture_uv(normal: DVec3, mirrored: bool) -> (f64, f64) {
     let DVec3 { x, y, z } = normal;
     sphere_uv(if mirrored { normal } else { DVec3::new(x, y, -z) })

@@ -113,6 +113,7 @@ pub trait Sides {
 
 impl<'a> SurfacePoint<'a> {
     /// Returns the point with these vectors and this colour, all exact; [`SurfacePoint`] explains them.
+    #[must_use]
     pub fn new(point: DVec3, direction: DVec3, normal: DVec3, surface: DVec3, material: &'a Material) -> Self {
         let (offset, errors) = (DVec3::ZERO, Errors::default());
         Self { point, offset, direction, normal, surface, material, errors }

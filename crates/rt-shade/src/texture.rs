@@ -43,6 +43,7 @@ impl Texture {
     ///
     /// `None` if a dimension or `maxval` is 0, if there are neither `3 width height` nor `width height` samples, or if
     /// one of them exceeds `maxval`.
+    #[must_use]
     pub fn new(width: usize, height: usize, samples: Vec<u16>, maxval: u16) -> Option<Self> {
         let channels = channels(width, height, samples.len())?;
         let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
@@ -57,6 +58,7 @@ impl Texture {
     /// let grey = Texture::from_bytes(2, 1, vec![0, 51], 255).unwrap();
     /// assert_eq!(grey.nearest(0.75, 0.5), glam::DVec3::splat(0.2));
     /// ```
+    #[must_use]
     pub fn from_bytes(width: usize, height: usize, samples: Vec<u8>, maxval: u8) -> Option<Self> {
         let channels = channels(width, height, samples.len())?;
         let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
@@ -65,11 +67,13 @@ impl Texture {
     }
 
     /// The number of columns; not 0.
+    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// The number of rows; not 0.
+    #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
@@ -86,6 +90,7 @@ impl Texture {
     /// assert_eq!(texture.texel(0.75, 0.5), (3, 1));
     /// assert_eq!(texture.texel(1.0, 1.0), (0, 1));
     /// ```
+    #[must_use]
     pub fn texel(&self, u: f64, v: f64) -> (usize, usize) {
         let column = whole(wrap(u) * self.width as f64);
         let row = whole(clamp_channel(v) * self.height as f64);
@@ -95,6 +100,7 @@ impl Texture {
     /// Returns the colour of the texel that holds `(u, v)`: the nearest texel center.
     ///
     /// Coordinates outside `0..=1` are treated as [`texel`](Self::texel) says.
+    #[must_use]
     pub fn nearest(&self, u: f64, v: f64) -> DVec3 {
         let (column, row) = self.texel(u, v);
         self.color_at(column, row)
@@ -104,6 +110,7 @@ impl Texture {
     ///
     /// Neighbours wrap around in `u` and end at the first and last row in `v`. Coordinates outside `0..=1` are
     /// treated as [`texel`](Self::texel) says. At a texel center it is that texel's colour.
+    #[must_use]
     pub fn bilinear(&self, u: f64, v: f64) -> DVec3 {
         // Centers lie at half-integers: texel i covers i..i+1. One whole turn is added to stay positive.
         let x = wrap(u) * self.width as f64 + (self.width as f64 - 0.5);
