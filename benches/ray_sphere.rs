@@ -57,8 +57,8 @@ fn cases(hits: bool, misses: bool) -> Vec<(Ray, Sphere)> {
     let mut random = Random::new(1);
     let make = move || {
         let (origin, center, radius) = (10.0 * random.point(), 10.0 * random.point(), 3.0 * random.uniform().abs());
-        let ray = Ray::new(origin, center + 1.4 * radius * random.point() - origin)?;
-        Some((ray, Sphere::new(center, radius)?))
+        let ray = Ray::new(origin, center + 1.4 * radius * random.point() - origin).ok()?;
+        Some((ray, Sphere::new(center, radius).ok()?))
     };
     std::iter::repeat_with(make)
         .flatten()

@@ -88,8 +88,8 @@ fn cases(hits: bool, misses: bool) -> Vec<(Ray, Triangle)> {
         let [a, b, c] = [random.point(), random.point(), random.point()].map(|v| place + v);
         let origin = 10.0 * random.point();
         let target = a + (0.7 * random.uniform() + 0.4) * (b - a) + (0.7 * random.uniform() + 0.4) * (c - a);
-        let ray = Ray::new(origin, (target - origin) * (1.5 + random.uniform()))?;
-        Some((ray, Triangle::new(a, b, c)?))
+        let ray = Ray::new(origin, (target - origin) * (1.5 + random.uniform())).ok()?;
+        Some((ray, Triangle::new(a, b, c).ok()?))
     };
     std::iter::repeat_with(make)
         .flatten()

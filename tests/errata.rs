@@ -16,7 +16,7 @@ fn ray(origin: DVec3, direction: DVec3) -> Ray {
 }
 
 fn triangle(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> Triangle {
-    Triangle::new(a.into(), b.into(), c.into()).expect("the numbers of the test are valid")
+    Triangle::new(a, b, c).expect("the numbers of the test are valid")
 }
 
 #[test]

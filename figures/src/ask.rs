@@ -97,7 +97,7 @@ pub fn rays(mesh: &Path, rays: &Path, style: Style) -> Result<(), Failure> {
     let tree = tree(mesh, style)?;
     let ray = |numbers: [f64; 6]| {
         let [a, b, c, d, e, f] = numbers;
-        Ray::new(DVec3::new(a, b, c), DVec3::new(d, e, f))
+        Ray::new([a, b, c], [d, e, f]).ok()
     };
     let answer = |ray: &Ray, text: &mut String| {
         let (mut hits, mut crossings) = (Vec::<Hit>::new(), Vec::<Crossing>::new());

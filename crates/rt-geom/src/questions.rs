@@ -118,7 +118,7 @@ fn sort_hits(hits: &mut [Hit]) {
 
 /// The ray that counts for a point; `None` for a point that is not finite.
 fn counting_ray(point: DVec3) -> Option<Ray> {
-    Ray::new(point, DIRECTION)
+    Ray::new(point, DIRECTION).ok()
 }
 
 impl Bvh {

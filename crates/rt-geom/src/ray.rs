@@ -24,21 +24,35 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Returns the ray, or `None` if a component is not finite or the direction is zero.
+    /// Returns the ray with this origin and direction, each a vector or three numbers.
+    ///
+    /// ```
+    /// use rt_geom::{Ray, RayError};
+    ///
+    /// assert!(Ray::new([0.0; 3], [0.0, 0.0, -1e-300]).is_ok());
+    /// assert_eq!(Ray::new([0.0; 3], [0.0; 3]), Err(RayError::ZeroDirection));
+    /// ```
+    ///
+    /// # Errors
+    /// If a component is not finite or the direction is zero.
     #[inline]
-    #[must_use]
-    pub fn new(origin: DVec3, direction: DVec3) -> Option<Self> {
+    pub fn new(origin: impl Into<DVec3>, direction: impl Into<DVec3>) -> Result<Self, RayError> {
+        Self::between(origin.into(), direction.into())
+    }
+
+    #[inline]
+    fn between(origin: DVec3, direction: DVec3) -> Result<Self, RayError> {
         const LONGEST: f64 = power_of_two(100);
         let reach = max_abs(direction);
         let square = direction.length_squared();
         // NaN if a component is, and then no comparison holds.
         let far = (origin.x.abs() + origin.y.abs() + origin.z.abs()) + square;
         let ordinary = (1.0 / LONGEST..=LONGEST).contains(&reach) && far < f64::INFINITY;
-        if !ordinary && !is_valid(origin, direction) {
-            return None;
+        if !ordinary && let Some(error) = refused(origin, direction) {
+            return Err(error);
         }
         let (reach, square) = if ordinary { (reach, square) } else { (f64::NAN, f64::NAN) };
-        Some(Self { origin, direction, reach, square, inverse_square: 1.0 / square })
+        Ok(Self { origin, direction, reach, square, inverse_square: 1.0 / square })
     }
 
     /// Where the ray starts; finite.
@@ -89,9 +103,41 @@ impl Ray {
     }
 }
 
+/// Why there is no such ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayError {
+    /// A coordinate of the origin is infinite or NaN.
+    OriginNotFinite,
+    /// A component of the direction is infinite or NaN.
+    DirectionNotFinite,
+    /// The direction is zero.
+    ZeroDirection,
+}
+
+impl fmt::Display for RayError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::OriginNotFinite => "the origin of a ray must be finite",
+            Self::DirectionNotFinite => "the direction of a ray must be finite",
+            Self::ZeroDirection => "the direction of a ray must not be zero",
+        })
+    }
+}
+
+impl std::error::Error for RayError {}
+
+/// What is wrong with a ray, if anything.
 #[inline(always)]
-fn is_valid(origin: DVec3, direction: DVec3) -> bool {
-    origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO
+fn refused(origin: DVec3, direction: DVec3) -> Option<RayError> {
+    if !origin.is_finite() {
+        Some(RayError::OriginNotFinite)
+    } else if !direction.is_finite() {
+        Some(RayError::DirectionNotFinite)
+    } else if direction == DVec3::ZERO {
+        Some(RayError::ZeroDirection)
+    } else {
+        None
+    }
 }
 
 /// Rays are equal if their origins and directions are.

@@ -576,7 +576,7 @@ mod tests {
             let radius = 0.5 * vector().x.abs();
             let touching = center + aside * radius;
             let origin = touching + direction * (away * 2f64.powi(round % 30));
-            let (Some(ray), sphere) = (Ray::new(origin, direction), Sphere::new(center, radius).unwrap()) else {
+            let (Ok(ray), sphere) = (Ray::new(origin, direction), Sphere::new(center, radius).unwrap()) else {
                 continue;
             };
             let node = Node {

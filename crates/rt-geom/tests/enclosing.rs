@@ -329,7 +329,7 @@ fn trees_of_two_balls_and_a_triangle_are_built_anywhere() {
         let halves = SphereTree::new(spheres.clone(), triangles.clone());
         let sorted = SphereTree::sorted(spheres.clone(), triangles.clone());
         for target in [spheres[0].center(), spheres[1].center(), (a + b + c) / 3.0, a] {
-            let Some(ray) = Ray::new(DVec3::ZERO, target) else { continue };
+            let Ok(ray) = Ray::new(DVec3::ZERO, target) else { continue };
             let range = 0.0..f64::INFINITY;
             let plain = spheres
                 .iter()

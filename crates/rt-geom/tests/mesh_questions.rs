@@ -83,7 +83,7 @@ fn the_tree_answers_as_the_list_does() {
             let whole = |random: &mut Random| DVec3::from_array([0, 1, 2].map(|_| f64::from(random.integer(-9..10))));
             let origin = if random.one_in(2) { whole(random) } else { 9.0 * random.point() };
             let direction = if i % 2 == 0 { whole(random) } else { random.point() };
-            let Some(ray) = Ray::new(origin, direction) else { continue };
+            let Ok(ray) = Ray::new(origin, direction) else { continue };
             let within = [AHEAD, f64::NEG_INFINITY..f64::INFINITY, 0.5..2.0, 3.0..1.0][random.below(4)].clone();
             tree.hits(&ray, within.clone(), &mut found);
             list.hits(&ray, within.clone(), &mut expected);
@@ -186,7 +186,7 @@ fn lines_through_nested_surfaces_are_properly_nested() {
             _ => (aim - 8.0 * direction.normalize(), &[]),
         };
         let towards = if i % 5 < 2 && i % 4 == 0 { aim - origin } else { direction };
-        let Some(ray) = Ray::new(origin, towards) else { continue };
+        let Ok(ray) = Ray::new(origin, towards) else { continue };
         tree.crossings(&ray, &mut crossings);
         check_nested(&crossings, surface, around, &ray);
         total += crossings.len();

@@ -21,7 +21,7 @@ fn equation(ray: &Ray, sphere: &Sphere) -> Quadratic {
 
 /// Checks everything about one line and one sphere; returns the number of roots.
 fn check(origin: DVec3, direction: DVec3, center: DVec3, radius: f64, rng: &mut Random) -> usize {
-    let (Some(ray), Some(sphere)) = (Ray::new(origin, direction), Sphere::new(center, radius)) else {
+    let (Ok(ray), Ok(sphere)) = (Ray::new(origin, direction), Sphere::new(center, radius)) else {
         return 0;
     };
     let equation = equation(&ray, &sphere);

@@ -26,7 +26,7 @@ fn verdict(place: Place) -> Verdict {
 }
 
 fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Random) -> Option<Verdict> {
-    let (ray, triangle) = (Ray::new(origin, direction)?, Triangle::new(a, b, c)?);
+    let (ray, triangle) = (Ray::new(origin, direction).ok()?, Triangle::new(a, b, c).ok()?);
     let truth = Crossing::new(&vector(direction), [a, b, c].map(|v| sub(&vector(v), &vector(origin))));
     let context = || format!("{ray:?} {triangle:?}");
 

@@ -52,12 +52,12 @@ fn scene(rng: &mut Random) -> Scene {
         let again = rng.below(4) == 0;
         if f64::from(i) < part * f64::from(count) {
             let radius = scale(rng.uniform().abs(), small);
-            let sphere = Sphere::new(at(rng, size), if rng.below(6) == 0 { 0.0 } else { radius });
+            let sphere = Sphere::new(at(rng, size), if rng.below(6) == 0 { 0.0 } else { radius }).ok();
             spheres.extend(if again { spheres.last().copied().or(sphere) } else { sphere });
         } else {
             let a = at(rng, size);
             let corner = |rng: &mut Random| a + scale_point(rng.point(), small);
-            let triangle = Triangle::new(a, corner(rng), corner(rng));
+            let triangle = Triangle::new(a, corner(rng), corner(rng)).ok();
             triangles.extend(if again { triangles.last().copied().or(triangle) } else { triangle });
         }
     }
@@ -122,7 +122,7 @@ fn ray(rng: &mut Random, scene: &Scene) -> Option<Ray> {
         }
     };
     let origin = if rng.below(3) > 0 { target - far } else { target + far };
-    Ray::new(origin, direction)
+    Ray::new(origin, direction).ok()
 }
 
 /// Every hit on the whole line, those of a sphere in ascending order, with the indices.

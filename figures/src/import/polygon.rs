@@ -433,7 +433,7 @@ fn largest<T>(values: [T; 3], above: impl Fn(&T, &T) -> bool) -> usize {
 fn are_on_a_line(corners: &[DVec3]) -> bool {
     let start = corners[0];
     let Some(&other) = corners.iter().find(|&&corner| corner != start) else { return true };
-    corners.iter().all(|&corner| Triangle::new(start, other, corner).is_none_or(|triangle| triangle.is_degenerate()))
+    corners.iter().all(|&corner| Triangle::new(start, other, corner).map_or(true, |triangle| triangle.is_degenerate()))
 }
 
 /// Which way three points turn: `Greater` is counterclockwise, `Equal` on a line. Exact for finite coordinates.

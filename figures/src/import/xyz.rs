@@ -481,7 +481,7 @@ impl Columns {
             return Err(LineProblem::NegativeRadius(radius));
         }
         let sphere = Sphere::new(center, self.options.scale * radius)
-            .ok_or_else(|| LineProblem::NotFinite { name: "radius", found: radius.to_string() })?;
+            .map_err(|_| LineProblem::NotFinite { name: "radius", found: radius.to_string() })?;
         let paint = match (color, element) {
             (Some(color), _) => AtomColor::Color(color),
             (None, Some(element)) if self.options.colored => AtomColor::Element(element),

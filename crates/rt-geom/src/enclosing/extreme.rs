@@ -37,7 +37,7 @@ pub(super) fn extreme(spheres: &[Sphere], solve: impl Fn(&[Sphere]) -> Option<En
         .iter()
         .map(|sphere| {
             let center = sphere.center() - if equal == DVec3::ZERO { DVec3::ZERO } else { equal };
-            Sphere::new(scale(center, -exponent), scale(sphere.radius(), -exponent))
+            Sphere::new(scale(center, -exponent), scale(sphere.radius(), -exponent)).ok()
         })
         .collect::<Option<_>>()?;
     let mut answer = solve(&scaled)?;
@@ -54,7 +54,7 @@ pub(super) fn extreme(spheres: &[Sphere], solve: impl Fn(&[Sphere]) -> Option<En
             radius = smallest_radius(center, &spheres[index]);
         }
     }
-    answer.sphere = Sphere::new(center, radius)?;
+    answer.sphere = Sphere::new(center, radius).ok()?;
     let bound = scale(answer.lower_bound, exponent).next_down().max(0.0);
     let largest = answer.support().iter().map(|&index| spheres[index].radius()).fold(bound, f64::max);
     answer.lower_bound = largest;

@@ -224,7 +224,7 @@ fn finish(spheres: &[Sphere], bracket: &Bracket, lower_bound: f64, support: &[us
         decided(Stage::DoubleDouble);
         bracket.high
     };
-    let sphere = Sphere::new(bracket.center, radius)?;
+    let sphere = Sphere::new(bracket.center, radius).ok()?;
     let (support, support_len) = sorted(support);
     Some(Enclosing { sphere, lower_bound, support, support_len })
 }

@@ -213,7 +213,7 @@ impl Subtrees<'_> {
             let spacing = center.abs().max_element() * (4.0 * U);
             let (far, reach) = self.farthest(simd, node, center, radius, &mut visits, stack)?;
             if reach <= radius * (1.0 + 16.0 * U) + spacing {
-                let sphere = Sphere::new(center, reach * (1.0 + 16.0 * U));
+                let sphere = Sphere::new(center, reach * (1.0 + 16.0 * U)).ok();
                 return Some(NodeSphere::new(sphere, tangent.support()));
             }
             if tangent.has(far) {
@@ -353,7 +353,7 @@ fn pair(a: &Sphere, b: &Sphere) -> Option<Sphere> {
     let most = reach(a).max(reach(b));
     let inner = 1e-3..1.0 - 1e-3;
     let good = inner.contains(&share) && ORDINARY.contains(&length) && ORDINARY.contains(&most);
-    if good { Sphere::new(center, most * (1.0 + 16.0 * U)) } else { None }
+    if good { Sphere::new(center, most * (1.0 + 16.0 * U)).ok() } else { None }
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ mod exact;
 mod filter;
 mod finish;
 
+use std::fmt;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -46,12 +47,53 @@ pub struct Sphere {
     radius: f64,
 }
 
+/// Why there is no such sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SphereError {
+    /// A coordinate of the center is infinite or NaN.
+    CenterNotFinite,
+    /// The radius is infinite or NaN.
+    RadiusNotFinite,
+    /// The radius is below zero.
+    NegativeRadius,
+}
+
+impl fmt::Display for SphereError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::CenterNotFinite => "the center of a sphere must be finite",
+            Self::RadiusNotFinite => "the radius of a sphere must be finite",
+            Self::NegativeRadius => "the radius of a sphere must not be negative",
+        })
+    }
+}
+
+impl std::error::Error for SphereError {}
+
 impl Sphere {
-    /// Returns the sphere, or `None` if a number is not finite or the radius is negative. Radius 0 is allowed.
-    #[must_use]
-    pub fn new(center: DVec3, radius: f64) -> Option<Self> {
-        let valid = center.is_finite() && radius.is_finite() && radius >= 0.0;
-        valid.then_some(Self { center, radius })
+    /// Returns the sphere around a center, a vector or three numbers. Radius 0 is allowed.
+    ///
+    /// ```
+    /// use rt_geom::{Sphere, SphereError};
+    ///
+    /// assert!(Sphere::new([1.0, 2.0, 3.0], 0.0).is_ok());
+    /// assert_eq!(Sphere::new([1.0, 2.0, 3.0], -1.0), Err(SphereError::NegativeRadius));
+    /// ```
+    ///
+    /// # Errors
+    /// If a number is not finite or the radius is negative.
+    #[inline]
+    pub fn new(center: impl Into<DVec3>, radius: f64) -> Result<Self, SphereError> {
+        let center = center.into();
+        if !center.is_finite() {
+            Err(SphereError::CenterNotFinite)
+        } else if !radius.is_finite() {
+            Err(SphereError::RadiusNotFinite)
+        } else if radius < 0.0 {
+            Err(SphereError::NegativeRadius)
+        } else {
+            Ok(Self { center, radius })
+        }
     }
 
     /// The center; finite.

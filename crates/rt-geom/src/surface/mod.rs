@@ -406,11 +406,11 @@ mod tests {
             let (place, size, way) = (random.power(-1000..1000), random.power(-1000..1000), random.power(-1000..1000));
             let center = place * random.point();
             let radius = if random.one_in(8) { 0.0 } else { size };
-            let Some(sphere) = Sphere::new(center, radius) else { continue };
+            let Ok(sphere) = Sphere::new(center, radius) else { continue };
             let direction = way * random.point();
             let origin = center + size.max(place) * random.point();
             let towards = if random.one_in(2) { center - origin } else { direction };
-            let Some(ray) = Ray::new(origin, towards) else { continue };
+            let Ok(ray) = Ray::new(origin, towards) else { continue };
             if radius > 0.0 {
                 hits += usize::from(check_sphere(&ray, &sphere, random).is_some());
             }

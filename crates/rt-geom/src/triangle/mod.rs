@@ -20,6 +20,7 @@ mod filter;
 mod finish;
 mod locate;
 
+use std::fmt;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -70,17 +71,46 @@ pub struct Triangle {
     edge: f64,
 }
 
+/// Why there is no such triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TriangleError {
+    /// A coordinate of this vertex, 0, 1 or 2, is infinite or NaN.
+    VertexNotFinite(usize),
+}
+
+impl fmt::Display for TriangleError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self::VertexNotFinite(vertex) = self;
+        write!(f, "the vertices of a triangle must be finite, and vertex {vertex} is not")
+    }
+}
+
+impl std::error::Error for TriangleError {}
+
 impl Triangle {
-    /// Returns the triangle, or `None` if a coordinate is not finite. A triangle without area is allowed, and
+    /// Returns the triangle with these vertices, each a vector or three numbers. A triangle without area is allowed, and
     /// nothing hits it.
-    #[must_use]
-    pub fn new(a: DVec3, b: DVec3, c: DVec3) -> Option<Self> {
-        let valid = a.is_finite() && b.is_finite() && c.is_finite();
+    ///
+    /// ```
+    /// use rt_geom::{Triangle, TriangleError};
+    ///
+    /// assert!(Triangle::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).is_ok());
+    /// assert_eq!(Triangle::new([0.0; 3], [1.0; 3], [f64::NAN; 3]), Err(TriangleError::VertexNotFinite(2)));
+    /// ```
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    #[inline]
+    pub fn new(a: impl Into<DVec3>, b: impl Into<DVec3>, c: impl Into<DVec3>) -> Result<Self, TriangleError> {
+        let vertices @ [a, b, c] = [a.into(), b.into(), c.into()];
+        if let Some(vertex) = vertices.iter().position(|vertex| !vertex.is_finite()) {
+            return Err(TriangleError::VertexNotFinite(vertex));
+        }
         let (e, f) = (b - a, c - a);
         let most = |x: f64, y: f64| larger(x.abs(), y.abs());
         let edge = most(e.x, f.x) + most(e.y, f.y) + most(e.z, f.z);
         let edge = if edge > SHORTEST { edge } else { f64::INFINITY };
-        valid.then_some(Self { vertices: [a, b, c], edge })
+        Ok(Self { vertices, edge })
     }
 
     /// The three vertices, as given; finite.
