@@ -78,7 +78,7 @@ pub fn texture_uv(normal: DVec3, mirrored: bool) -> (f64, f64) {
 /// errors of `u` and `v`: infinite or NaN where nothing is known, as `u` is near a pole.
 ///
 /// An angle is off by at most `1.01 e / h` where the direction is off by `e` beside its length `h`; in shares of a turn,
-/// and of half a turn, `docs/numerics.md`, section 11, has the proof.
+/// and of half a turn, `docs/numerics.md`, section 14, has the proof.
 #[must_use]
 pub fn texture_uv_within(normal: DVec3, error: f64, mirrored: bool) -> ((f64, f64), (f64, f64)) {
     let coordinates = texture_uv(normal, mirrored);

@@ -14,7 +14,7 @@
 //! sides, the eye's and the light's, are decided exactly, since the specular term jumps where the light sets.
 //!
 //! A colour comes with a bound of its error, which holds for vectors that are themselves known within bounds:
-//! `docs/numerics.md`, section 11, derives it.
+//! `docs/numerics.md`, section 14, derives it.
 
 use std::cmp::Ordering;
 
@@ -33,6 +33,8 @@ const COSINE_ROUNDING: f64 = 3.2 * U;
 const ALIGNMENT_ROUNDING: f64 = 17.5 * U;
 /// Up to here the bounds are proved for the errors of directions: `2^-7`.
 const LARGEST_ERROR: f64 = power_of_two(-7);
+/// Swallows what underflows in a term, in its bound and in a power.
+pub(crate) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// How a surface answers light: the coefficients of Phong's terms.
 ///
@@ -228,7 +230,8 @@ pub fn phong_with_sides(seen: &SurfacePoint, lights: &[PointLight], sides: &impl
             }
         }
     }
-    let rounding = if adds { sum_rounding(lights.len()) * brightest(color) } else { product_rounding(seen) };
+    let rounding =
+        if adds { sum_rounding(lights.len()) * brightest(color) + UNDERFLOW } else { product_rounding(seen) };
     Shaded { color, error: 1.01 * (error + rounding + material.ambient * errors.surface) }
 }
 
@@ -267,8 +270,6 @@ pub(crate) fn alignment_error(incident: f64, normal: f64) -> f64 {
 /// The error of `power`, the `shininess`-th power of an alignment with an error, clamped.
 #[inline(always)]
 pub(crate) fn power_error(alignment: f64, error: f64, power: f64, shininess: f64) -> f64 {
-    /// What a power may lose where it is subnormal.
-    const UNDERFLOW: f64 = f64::MIN_POSITIVE;
     let growth = shininess * error / (alignment - error);
     // (1 + e/x)^s - 1 <= exp(s e / x) - 1, and below likewise
     let near = (1.05 * growth + 2.1 * U) * power + UNDERFLOW;
@@ -283,7 +284,8 @@ pub(crate) fn power_error(alignment: f64, error: f64, power: f64, shininess: f64
 /// brightness, times it.
 #[inline(always)]
 pub(crate) fn diffuse_error(brightest_surface: f64, surface_error: f64, cosine_error: f64) -> f64 {
-    brightest_surface * (cosine_error + 3.1 * U) + surface_error
+    // A large coefficient may lift what underflows here.
+    brightest_surface * (cosine_error + 3.1 * U) + surface_error + UNDERFLOW
 }
 
 /// The largest channel.
@@ -299,14 +301,24 @@ pub(crate) fn sum_rounding(lights: usize) -> f64 {
     (2 * lights + 5) as f64 * U
 }
 
-/// The rounding of the ambient term alone: exactly what the products lose.
+/// The rounding of the ambient term alone: exactly what the products lose, where a product is exact in two doubles.
 fn product_rounding(seen: &SurfacePoint) -> f64 {
+    const ORDINARY: std::ops::Range<f64> = power_of_two(-900)..power_of_two(900);
     let ambient = seen.material.ambient;
-    seen.surface.to_array().into_iter().fold(0.0, |most: f64, channel| {
-        let lost = two_prod::<false>(ambient, channel).1.abs();
-        // Out of the range of exact products.
-        let small = (ambient * channel).abs() < power_of_two(-900) && ambient != 0.0 && channel != 0.0;
-        most.max(if small { power_of_two(-900) } else { lost })
+    // What underflows in the error of the surface.
+    let least = if seen.errors.surface == 0.0 { 0.0 } else { UNDERFLOW };
+    seen.surface.to_array().into_iter().fold(least, |most, channel| {
+        let product = ambient * channel;
+        let exact = ORDINARY.contains(&product.abs()) && ORDINARY.end > ambient.abs().max(channel.abs());
+        let lost = if exact {
+            two_prod::<false>(ambient, channel).1.abs()
+        } else if ambient == 0.0 || channel == 0.0 {
+            product.abs()
+        } else {
+            U * product.abs() + UNDERFLOW
+        };
+        // NaN stays.
+        if most >= lost { most } else { lost + 0.0 * most }
     })
 }
 
@@ -732,5 +744,126 @@ mod tests {
         let shaded = shade(0.1, 0.7);
         let lost = (exact(0.1) * exact(0.7) - exact(shaded.color.x)).to_f64().value().abs();
         assert!(lost <= shaded.error && shaded.error <= 1.02 * lost && lost > 0.0, "{shaded:?} {lost:e}");
+    }
+
+    #[test]
+    fn what_underflows_in_a_product_is_within_the_bound() {
+        let mut random = Random::new(13);
+        for _ in 0..cases(LONG) / 10 {
+            let (normal, light) = (random.point(), lamp(DVec3::Z + random.point()));
+            let size = random.power(-40..-8);
+            // Coefficients that lift a subnormal colour back to 1 and more.
+            let (dark, huge) = (f64::from_bits(1 + random.bits() % 1000), f64::MAX / 1e4);
+            let material = Material { ambient: 0.0, diffuse: huge, specular: 0.0, shininess: 1.0 };
+            let seen = SurfacePoint {
+                errors: Errors { normal: size, ..Errors::default() },
+                ..SurfacePoint::new(DVec3::ZERO, -DVec3::Z, normal, DVec3::splat(dark), &material)
+            };
+            let shaded = phong(&seen, &[light]);
+            let moved = normal + 0.5 * size * random.point();
+            if shaded.error < f64::INFINITY {
+                let vectors = [&vector(DVec3::ZERO), &vector(seen.direction), &vector(moved)];
+                let error = distance(&shaded, vectors, seen.surface, &material, &light);
+                assert!(error <= shaded.error, "{seen:?} {shaded:?} is {error:e} off");
+            }
+        }
+    }
+
+    #[test]
+    fn an_ambient_product_of_any_size_is_within_its_bound() {
+        let mut random = Random::new(14);
+        let below = lamp(DVec3::NEG_Z);
+        for _ in 0..cases(LONG) {
+            let ambient = random.with_exponent(-1074..1024).abs();
+            let channel = random.with_exponent(-1074..0).abs();
+            let material = Material { ambient, ..SHINY };
+            let surface = DVec3::new(0.0, channel, 0.0);
+            let shaded = phong(&SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, surface, &material), &[below]);
+            let truth = exact(ambient) * exact(channel);
+            if shaded.color.y < f64::INFINITY {
+                let lost = (truth - exact(shaded.color.y)).to_f64().value().abs();
+                assert!(lost <= shaded.error, "{ambient:e} {channel:e}: {shaded:?} is {lost:e} off");
+            } else {
+                assert_eq!(shaded.error, f64::INFINITY);
+            }
+        }
+        let unknown = |surface: f64, ambient: f64| {
+            let errors = Errors { surface: f64::INFINITY, ..Errors::default() };
+            let material = Material { ambient, ..SHINY };
+            let seen = SurfacePoint::new(DVec3::ZERO, DVec3::NEG_Z, DVec3::Z, DVec3::splat(surface), &material);
+            phong(&SurfacePoint { errors, ..seen }, &[below]).error
+        };
+        assert!(is_unknown(unknown(0.5, 0.1)) && is_unknown(unknown(0.0, 0.0)));
+    }
+
+    /// Whether a bound says that nothing is known.
+    fn is_unknown(bound: f64) -> bool {
+        bound.is_nan() || bound == f64::INFINITY
+    }
+
+    #[test]
+    fn errors_that_are_unknown_never_look_small() {
+        let mut random = Random::new(15);
+        for i in 0..1000 {
+            let [direction, normal, position] = [0; 3].map(|_| random.point());
+            let zero_or = |x: f64, random: &mut Random| if random.one_in(3) { 0.0 } else { x };
+            let material = Material {
+                ambient: zero_or(0.1, &mut random),
+                diffuse: zero_or(0.6, &mut random),
+                specular: zero_or(0.3, &mut random),
+                shininess: random.pick(&[0.5, 1.0, 32.0, 1e6]),
+            };
+            let color = DVec3::splat(zero_or(1.0, &mut random));
+            let surface = DVec3::splat(zero_or(0.5, &mut random));
+            let unknown = random.pick(&[f64::INFINITY, f64::NAN]);
+            let errors = match i % 3 {
+                0 => Errors { point: unknown, ..Errors::default() },
+                1 => Errors { normal: unknown, ..Errors::default() },
+                _ => Errors { surface: unknown, ..Errors::default() },
+            };
+            let seen = SurfacePoint { errors, ..SurfacePoint::new(DVec3::ZERO, direction, normal, surface, &material) };
+            for lights in [&[][..], &[PointLight { position, color }]] {
+                // Without lights the vectors do not matter.
+                if lights.is_empty() && i % 3 != 2 {
+                    continue;
+                }
+                let shaded = phong(&seen, lights);
+                assert!(is_unknown(shaded.error), "{seen:?} {lights:?} {shaded:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_worst_direction_of_an_error_is_within_the_bound() {
+        let mut random = Random::new(16);
+        let mut sharpest = [0.0f64; 2];
+        for i in 0..cases(LONG) {
+            let (normal, size) = (random.point().normalize(), random.power(-30..-9));
+            let position = 0.5 * normal + 2.0 * random.point();
+            let light = PointLight { position, color: DVec3::ONE };
+            let incident = -position.normalize();
+            let mirrored = incident - 2.0 * incident.dot(normal) * normal;
+            let direction = -(mirrored + 0.3 * random.point());
+            // The normal turns towards the light, or towards the eye and the light alike; the point moves across.
+            let across = |v: DVec3, n: DVec3| (v - v.dot(n) * n).normalize_or_zero();
+            let (turned, material) = if i % 2 == 0 {
+                (across(incident, normal), Material { ambient: 0.0, diffuse: 1.0, specular: 0.0, shininess: 1.0 })
+            } else {
+                let towards = across(-direction, mirrored) + across(incident, normal);
+                (across(towards, normal), Material { ambient: 0.0, diffuse: 0.0, specular: 1.0, shininess: 8.0 })
+            };
+            let wrong = random.sign() * 0.999 * size;
+            let errors = Errors { normal: size, ..Errors::default() };
+            let given = SurfacePoint::new(DVec3::ZERO, direction, normal, DVec3::ONE, &material);
+            let shaded = phong(&SurfacePoint { errors, ..given }, &[light]);
+            if shaded.error < 1.0 && shaded.color.x > 0.0 {
+                let vectors = [&vector(DVec3::ZERO), &vector(direction), &vector(normal + wrong * turned)];
+                let error = distance(&shaded, vectors, DVec3::ONE, &material, &light);
+                assert!(error <= shaded.error, "{given:?} {shaded:?} is {error:e} off");
+                sharpest[i % 2] = sharpest[i % 2].max(error / shaded.error);
+            }
+        }
+        // A normal that turns takes the mirrored light twice as far; the bound allows four times, for lengths.
+        assert!(sharpest[0] > 0.9 && sharpest[1] > 0.15, "{sharpest:?}");
     }
 }

@@ -11,8 +11,8 @@ use glam::DVec3;
 use rt_math::exact::U;
 
 use crate::phong::{
-    INCIDENT_ERROR, PointLight, Shaded, SurfacePoint, UNIT_ERROR, alignment, alignment_error, brightest, cosine_error,
-    diffuse_error, norm, ordinary_unit, phong, power_error, relative, slope, sum_rounding,
+    INCIDENT_ERROR, PointLight, Shaded, SurfacePoint, UNDERFLOW, UNIT_ERROR, alignment, alignment_error, brightest,
+    cosine_error, diffuse_error, norm, ordinary_unit, phong, power_error, relative, slope, sum_rounding,
 };
 use crate::power::ordinary_power;
 
@@ -192,7 +192,7 @@ fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint)
         }
     }
     for i in 0..LANES {
-        let rounding = sum_rounding(lights.len()) * brightest(color.at(i));
+        let rounding = sum_rounding(lights.len()) * brightest(color.at(i)) + UNDERFLOW;
         errors[i] = 1.01 * (errors[i] + rounding + ambient[i] * surface_error[i]);
     }
     (color, errors)

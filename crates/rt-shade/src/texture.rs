@@ -138,16 +138,18 @@ impl Texture {
         let (x, y) = (u * width, v * height);
         // The product is rounded, and so are the ends.
         let (across, down) = ((u_error + 3.0 * U) * width, (v_error + 3.0 * U) * height);
-        // From 0 to the last column, so that nothing wraps; v ends where it ends. False for NaN.
+        // From 0 to the last column, so that nothing wraps; v ends where it ends. False for NaN, of which the whole part
+        // is 0.
         let column = whole(x + across);
         let inside = x - across >= 0.0 && x + across < width && whole(x - across) == column;
         let [top, bottom] = [y - down, y + down].map(|end| whole(end).min(self.height - 1));
-        (inside && top == bottom).then(|| self.color_at(column, bottom))
+        let known = y - down <= y + down;
+        (inside && known && top == bottom).then(|| self.color_at(column, bottom))
     }
 
     /// Returns what [`bilinear`](Self::bilinear) returns, and a bound of its error for coordinates with these errors.
     ///
-    /// A channel changes by at most 1 from texel to texel. `docs/numerics.md`, section 11, has the proof.
+    /// A channel changes by at most 1 from texel to texel. `docs/numerics.md`, section 14, has the proof.
     #[must_use]
     pub fn bilinear_within(&self, (u, v): (f64, f64), (u_error, v_error): (f64, f64)) -> (DVec3, f64) {
         let (width, height) = (self.width as f64, self.height as f64);
@@ -200,9 +202,11 @@ fn whole(x: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use oracle::{Big, Random, cases, dot, exact, long, root, rounded, sub, vector};
     use proptest::prelude::*;
 
     use super::*;
+    use crate::texture_uv_within;
 
     /// A texture whose texel (column, row) has the samples (column, row, column + row).
     fn ramp(width: usize, height: usize) -> Texture {
@@ -336,5 +340,125 @@ mod tests {
         assert!(column(left, true) > column(right, true), "the report's raw orientation");
         let (_, north) = crate::texture_uv(DVec3::new(0.1, 0.9, 0.1), false);
         assert!(north < 0.5, "north is at the top row");
+    }
+
+    /// Whether a bound says that nothing is known.
+    fn is_unknown(bound: f64) -> bool {
+        bound.is_nan() || bound == f64::INFINITY
+    }
+
+    /// The exact coordinates of a lookup, in texels.
+    fn exact_place(normal: DVec3, mirrored: bool, texture: &Texture) -> [Big; 2] {
+        let sides = normal.to_array().map(f64::is_sign_negative);
+        let turned = if mirrored { normal } else { DVec3 { z: -normal.z, ..normal } };
+        let [u, v] = oracle::coordinates(&vector(turned).map(|part| long(&part)), {
+            let [x, y, z] = sides;
+            [x, y, z == mirrored]
+        });
+        [u * long(&exact(texture.width as f64)), v * long(&exact(texture.height as f64))]
+    }
+
+    /// The texel's channel that the exact mixture takes.
+    fn exact_mixture(texture: &Texture, [x, y]: &[Big; 2], axis: usize) -> Big {
+        let half = long(&exact(0.5));
+        let cell = |place: &Big| {
+            let below = (place - &half).floor();
+            (below.to_f64().value(), place - &half - &below)
+        };
+        let ((left, across), (top, down)) = (cell(x), cell(y));
+        let column = |k: f64| whole(k.rem_euclid(texture.width as f64));
+        let row = |k: f64| whole(k.clamp(0.0, (texture.height - 1) as f64));
+        let texel = |i: f64, j: f64| long(&exact(texture.color_at(column(left + i), row(top + j))[axis]));
+        let mix = |a: Big, b: Big, share: &Big| &a + (b - &a) * share;
+        let [upper, lower] = [0.0, 1.0].map(|j| mix(texel(0.0, j), texel(1.0, j), &across));
+        mix(upper, lower, &down)
+    }
+
+    /// A normal beside the seam, a pole, the border or the center of a texel, or anywhere.
+    fn hard_normal(random: &mut Random, texture: &Texture, kind: usize) -> DVec3 {
+        let tiny = random.power(-60..-4);
+        match kind {
+            0 => DVec3::new(-1.0, random.uniform(), tiny * random.uniform()),
+            1 => DVec3::new(tiny * random.uniform(), random.sign(), tiny * random.uniform()),
+            2 => {
+                let (width, height) = (2 * texture.width, 2 * texture.height);
+                let turn = std::f64::consts::TAU * random.below(width) as f64 / width as f64;
+                let fall = std::f64::consts::PI * random.below(height) as f64 / height as f64;
+                let (sin, cos) = (fall + tiny * random.uniform()).sin_cos();
+                let (z, x) = (turn + tiny * random.uniform()).sin_cos();
+                DVec3::new(sin * x, cos, sin * z)
+            }
+            _ => random.point(),
+        }
+    }
+
+    #[test]
+    fn lookups_within_errors_are_those_of_the_exact_coordinates() {
+        let mut random = Random::new(21);
+        let textures = [(1, 1), (2, 1), (7, 5), (64, 2), (333, 256), (65_535, 1), (1, 40_000), (30_001, 3)];
+        let textures = textures.map(|(width, height)| {
+            let mut sample = || u8::try_from(random.below(2)).expect("0 or 1");
+            let samples = (0..width * height).map(|_| sample()).collect();
+            Texture::from_bytes(width, height, samples, 1).expect("bits")
+        });
+        let (mut found, mut open, mut sharpest) = (0, 0, 0.0f64);
+        for i in 0..cases(100_000) {
+            let texture = &textures[i % textures.len()];
+            let mirrored = random.one_in(2);
+            let normal = hard_normal(&mut random, texture, i / textures.len() % 4);
+            let length = if random.one_in(4) { random.power(-900..900) } else { 1.0 };
+            // From no error at all to one that is too large to say anything.
+            let size = if random.one_in(8) { 0.0 } else { random.power(-56..0) };
+            let wrong = normal + size * random.point();
+            let error = rounded(&root(&{
+                let difference = sub(&vector(wrong), &vector(normal));
+                dot(&difference, &difference)
+            }))
+            .next_up();
+            let error = if wrong == normal { 0.0 } else { error };
+            let (coordinates, errors) = texture_uv_within(length * wrong, length * error, mirrored);
+            // Scaling is exact, or the normal is what it gives.
+            if length * wrong / length != wrong || normal == DVec3::ZERO || length * error / length < error {
+                continue;
+            }
+            let place = exact_place(normal, mirrored, texture);
+            match texture.nearest_within(coordinates, errors) {
+                None => open += 1,
+                Some(color) => {
+                    found += 1;
+                    let [column, row] = place.each_ref().map(|place| whole(place.floor().to_f64().value()));
+                    let expected = texture.color_at(column % texture.width, row.min(texture.height - 1));
+                    assert_eq!(color, expected, "{normal:?} as {wrong:?}, {coordinates:?} {errors:?}, {column} {row}");
+                }
+            }
+            let (color, bound) = texture.bilinear_within(coordinates, errors);
+            let off = (exact(color.x) - exact_mixture(texture, &place, 0)).to_f64().value().abs();
+            assert!(
+                off <= bound || is_unknown(bound),
+                "{normal:?} as {wrong:?}: {color} is {off:e} off, bound {bound:e}"
+            );
+            if bound < 0.5 {
+                sharpest = sharpest.max(off / bound);
+            }
+        }
+        assert!(found > cases(100_000) / 4 && open > cases(100_000) / 10, "{found} {open}");
+        assert!(sharpest > 0.5, "{sharpest}");
+    }
+
+    #[test]
+    fn coordinates_without_a_bound_show_no_texel() {
+        let texture = ramp(4, 2);
+        for error in [f64::INFINITY, f64::NAN] {
+            for (u, v) in [(error, 0.0), (0.0, error)] {
+                assert_eq!(texture.nearest_within((0.4, 0.3), (u, v)), None);
+                assert!(is_unknown(texture.bilinear_within((0.4, 0.3), (u, v)).1));
+            }
+            assert_eq!(texture.nearest_within((error, 0.3), (0.0, 0.0)), None);
+            let (_, (u, v)) = texture_uv_within(DVec3::new(1.0, 2.0, 3.0), error, false);
+            assert!(is_unknown(u) && is_unknown(v));
+        }
+        // At a pole the longitude is unknown, and the latitude is not.
+        let (_, (u, v)) = texture_uv_within(DVec3::Y, 0.0, false);
+        assert!(is_unknown(u) && v < 1e-15);
     }
 }
