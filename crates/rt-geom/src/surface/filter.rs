@@ -13,7 +13,7 @@ const UNDERFLOW: f64 = power_of_two(-1000);
 const WAY_ERROR: f64 = 2.02 * U;
 const POINT_ERROR: f64 = 1.02 * U;
 
-/// The error of the product of two edges, relative to the square of their bound; `5.7 u` is proved.
+/// The error of the product of two edges, relative to the square of their bound; `4.1 u` is proved.
 const PRODUCT_ERROR: f64 = 6.1 * U;
 
 /// A hit in plain doubles. An error that is infinite or NaN says that nothing is known.

@@ -102,7 +102,7 @@ impl<'a> HitPoint<'a> {
     ///
     /// For every finite ray, shape and point: the error is at most `4 * 2^-53` of the length, and where a component
     /// underflows at most `2^-1074` more. A component beyond the largest double is infinite, with an infinite error. A
-    /// point that is not finite gives NaN. `docs/numerics.md`, section 13, has the proof.
+    /// point that is not finite gives NaN. `docs/numerics.md`, section 14, has the proof.
     #[must_use]
     pub fn from(&self, point: DVec3) -> Bounded {
         self.from_within(point, FEW_ULP)
@@ -139,8 +139,8 @@ impl<'a> HitPoint<'a> {
                     .unwrap_or_else(|| exact::sphere_normal(self, &sphere))
             }
             Shape::Triangle(triangle) => {
-                let vector = triangle.normal().unwrap_or(DVec3::NAN);
-                Bounded { vector, error: 4.6 * U }
+                let unknown = Bounded { vector: DVec3::NAN, error: f64::NAN };
+                triangle.normal().map_or(unknown, |vector| Bounded { vector, error: 4.6 * U })
             }
         }
     }
@@ -490,5 +490,132 @@ mod tests {
         assert!(hit.faces_ray() && !sphere.hit_point(&inside, 1.0).faces_ray());
         assert_eq!(hit.side_of(DVec3::NAN), Ordering::Equal);
         assert!(hit.from(DVec3::INFINITY).vector.is_nan());
+    }
+
+    #[test]
+    fn hits_closer_than_a_square_underflows_are_known_too() {
+        let random = &mut Random::new(5);
+        let mut hits = 0;
+        for _ in 0..cases(LONG) / 20 {
+            let corner = if random.one_in(2) { DVec3::ZERO } else { random.power(-1000..-500) * random.point() };
+            let [e, f] = [random.point(), random.point()];
+            let triangle = Triangle::new(corner, e, f).unwrap();
+            let near = random.power(-600..-480);
+            let (u, v, direction) = (random.share(), random.share(), random.point());
+            let aim = corner + near * (u * e + v * f);
+            let Some(ray) = Ray::new(aim - near * direction, direction) else { continue };
+            let Some(t) = triangle.closest(&ray, 0.0..f64::INFINITY) else { continue };
+            let truth = Truth::at_triangle(&ray, &triangle);
+            let hit = triangle.hit_point(&ray, t);
+            let points = [corner, ray.origin(), aim, aim + near * random.point(), near * random.point()];
+            check(&hit, &truth, &points);
+            hits += 1;
+        }
+        assert!(hits > cases(LONG) / 80, "{hits}");
+    }
+
+    #[test]
+    fn roots_a_few_doubles_apart_are_told_apart() {
+        let random = &mut Random::new(6);
+        let (mut known, mut all) = ([0; 2], 0);
+        for _ in 0..cases(LONG) / 2 {
+            // About a power of two, where the doubles below are twice as dense.
+            let (power, axis) = (random.power(-20..40), DVec3::AXES[random.below(3)]);
+            let spacing = power * 2.0 * U;
+            let t = power + spacing * 0.5 * random.small(6);
+            let direction = random.sign() * random.pick(&[1.0, 3.0, 0.7]) * axis;
+            let beside = DVec3::from_array(axis.to_array().map(|on| if on == 1.0 { 0.0 } else { random.uniform() }));
+            let radius =
+                direction.length() * spacing * random.pick(&[0.3, 0.5, 1.0, 2.5, 1e3, 1e9]) * random.within(0.2, 1.5);
+            let origin = DVec3::from_array(axis.to_array().map(|on| on * random.pick(&[0.0, 1.0, -power])));
+            let center = origin + t * direction + 0.7 * radius * beside;
+            let (Some(sphere), Some(ray)) = (Sphere::new(center, radius), Ray::new(origin, direction)) else {
+                continue;
+            };
+            let Roots::Two(near, far) = sphere.roots(&ray) else { continue };
+            for t in [near, far] {
+                all += 1;
+                let expected = if t == near { Root::Near } else { Root::Far };
+                if let Some(found) = finish::root(&sphere.hit_point(&ray, t), &sphere) {
+                    assert_eq!(found, expected, "{ray:?} {sphere:?}: {near:e} {far:e}, {t:e}");
+                    known[usize::from(found == Root::Far)] += 1;
+                }
+                let truth = Truth::at_sphere(&ray, &sphere, expected == Root::Far);
+                check(&sphere.hit_point(&ray, t), &truth, &[center, origin]);
+            }
+        }
+        assert!(known[0] > all / 4 && known[1] > all / 8, "{known:?} of {all}");
+    }
+
+    #[test]
+    fn hits_at_the_origin_of_the_ray_and_from_inside_are_known() {
+        let random = &mut Random::new(7);
+        let mut hits = 0;
+        for i in 0..cases(LONG) / 10 {
+            let (center, radius) = (random.power(-4..8) * random.point(), random.power(-8..60));
+            let sphere = Sphere::new(center, radius).unwrap();
+            let axis = DVec3::AXES[random.below(3)];
+            let origin = match i % 3 {
+                // On the surface, exactly or within rounding.
+                0 => center + random.sign() * radius * axis,
+                1 => center + radius * random.point().normalize(),
+                _ => center + 0.9 * radius * random.share() * axis,
+            };
+            let direction = random.power(-3..3) * if i % 2 == 0 { random.point() } else { random.sign() * axis };
+            let Some(ray) = Ray::new(origin, direction) else { continue };
+            hits += usize::from(check_sphere(&ray, &sphere, random).is_some());
+        }
+        assert!(hits > cases(LONG) / 30, "{hits}");
+    }
+
+    #[test]
+    fn what_is_unknown_never_looks_small() {
+        let triangle = Triangle::new(DVec3::ZERO, DVec3::X, 2.0 * DVec3::X).unwrap();
+        let ray = Ray::new(DVec3::ONE, DVec3::NEG_Y).unwrap();
+        let flat = triangle.hit_point(&ray, 1.0);
+        assert!(flat.normal().error.is_nan());
+        let is_unknown = |bound: f64| bound.is_nan() || bound == f64::INFINITY;
+        assert!(is_unknown(triangle.estimated_weights(&flat.estimate()).1));
+        let sphere = Sphere::new(DVec3::ZERO, 1.0).unwrap();
+        for t in [f64::INFINITY, f64::NAN, f64::MAX] {
+            let far = Ray::new(DVec3::ONE, 1e10 * DVec3::ONE).unwrap();
+            let estimate = sphere.hit_point(&far, t).estimate();
+            assert!(is_unknown(estimate.point_error) && is_unknown(estimate.normal_error), "{estimate:?}");
+        }
+    }
+
+    #[test]
+    fn the_weights_of_slivers_are_within_their_bound() {
+        let random = &mut Random::new(8);
+        let (mut known, mut sharpest) = (0, 0.0f64);
+        for i in 0..cases(LONG) / 4 {
+            let scale = if i % 4 == 0 { random.power(-140..140) } else { 1.0 };
+            let base = scale * random.power(-8..20) * random.point();
+            let a = base + scale * random.point();
+            let b = base + scale * random.point();
+            let c = a + (b - a) * random.within(-0.5, 1.5) + scale * random.power(-30..-4) * random.point();
+            let Some(triangle) = Triangle::new(a, b, c) else { continue };
+            let aim = a + 0.5 * random.share() * (b - a) + 0.5 * random.share() * (c - a);
+            let direction = scale * random.point();
+            let Some(ray) = Ray::new(aim - random.power(-4..6) * direction, direction) else { continue };
+            let Some(t) = triangle.closest(&ray, 0.0..f64::INFINITY) else { continue };
+            let [d, o] = [ray.direction(), ray.origin()].map(vector);
+            let corners = triangle.vertices().map(|vertex| sub(&vector(vertex), &o));
+            let truth = Crossing::new(&d, corners).weights().unwrap();
+            let (found, bound) = triangle.estimated_weights(&triangle.hit_point(&ray, t).estimate());
+            if bound < 1.0 {
+                known += 1;
+                for j in 0..3 {
+                    let error = (exact(found[j]) - &truth[j]).to_f64().value().abs();
+                    let bound = if j == 0 { 2.0 * bound + 2.0 * U } else { bound };
+                    assert!(
+                        error <= bound,
+                        "{triangle:?} {ray:?}: weight {j} of {found:?} is {error:e} off, {bound:e}"
+                    );
+                    sharpest = sharpest.max(error / bound);
+                }
+            }
+        }
+        assert!(known > cases(LONG) / 50 && sharpest > 0.02, "{known} {sharpest}");
     }
 }
