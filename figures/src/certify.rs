@@ -181,3 +181,62 @@ fn certain(Shaded { color, error }: Shaded, count: usize, maxval: u16) -> Option
     // False for NaN.
     (slack < 0.25 && low == high).then(|| low.map(|whole| whole as u16))
 }
+
+#[cfg(test)]
+mod tests {
+    use oracle::{Big, Random, cases, exact};
+
+    use super::*;
+
+    /// `2 maxval sum + count`, of which the byte is the quotient with `2 count`.
+    fn doubled(sum: &Big, count: usize, maxval: u16) -> Big {
+        exact(2.0 * f64::from(maxval)) * sum + exact(count as f64)
+    }
+
+    #[test]
+    fn no_wrong_byte_is_certain() {
+        let mut random = Random::new(1);
+        let (mut taken, mut beside) = (0, 0);
+        for _ in 0..cases(1_000_000) {
+            let (count, maxval) = (1 + random.below(64), random.pick(&[1, 255, 65535]));
+            // Colours whose mean is next to the middle between two bytes.
+            let byte = 1.0 + random.below(usize::from(maxval)) as f64;
+            let middle = (byte - 0.5) / f64::from(maxval);
+            let spread = random.pick(&[0.0, 1.0]) * middle.min(1.0 - middle);
+            let mut colors: Vec<f64> =
+                (1..count).map(|_| (middle + spread * random.uniform()).clamp(0.0, 1.0)).collect();
+            let rest = count as f64 * middle - colors.iter().sum::<f64>();
+            let dust = random.sign() * random.power(-60..-20) * random.share();
+            colors.push((rest + random.pick(&[0.0, 1.0]) * dust).clamp(0.0, 1.0));
+            random.shuffle(&mut colors);
+            let error = if random.one_in(3) { 0.0 } else { random.power(-60..-20) };
+            // As the certifier adds them up.
+            let sum = colors.iter().fold(0.0, |sum, color| sum + color);
+            let shaded = Shaded { color: DVec3::splat(sum), error };
+            let Some(bytes) = certain(shaded, count, maxval) else { continue };
+            taken += 1;
+            let truth = colors.iter().fold(exact(0.0), |sum, &color| sum + exact(color));
+            for off in [-error, 0.0, error] {
+                let doubled = doubled(&(&truth + exact(off)), count, maxval);
+                let [low, high] = [0.0, 1.0].map(|more| exact(2.0 * count as f64 * (f64::from(bytes[0]) + more)));
+                assert!(low <= doubled && doubled < high, "{colors:?} {error:e} of {maxval}: {bytes:?}");
+            }
+            beside += usize::from((sum / count as f64 - middle).abs() * f64::from(maxval) < 1e-9);
+        }
+        assert!(taken > cases(1_000_000) / 4 && beside > cases(1_000_000) / 50, "{taken} {beside}");
+    }
+
+    #[test]
+    fn what_is_unknown_is_not_certain() {
+        for error in [f64::NAN, f64::INFINITY, 0.01] {
+            for count in [1, 4] {
+                assert_eq!(certain(Shaded { color: DVec3::splat(0.3), error }, count, 255), None, "{error} {count}");
+            }
+        }
+        assert_eq!(certain(Shaded { color: DVec3::ONE, error: 1e-15 }, 1, 65535), Some([65535; 3]));
+        assert_eq!(certain(Shaded { color: DVec3::ZERO, error: 1e-15 }, 1, 65535), Some([0; 3]));
+        // Exactly one half is a byte for one colour that is exact, and open for a sum, which was rounded.
+        assert_eq!(certain(Shaded { color: DVec3::splat(0.5), error: 0.0 }, 1, 255), Some([128; 3]));
+        assert_eq!(certain(Shaded { color: DVec3::splat(1.0), error: 0.0 }, 2, 255), None);
+    }
+}

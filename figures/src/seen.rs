@@ -124,7 +124,9 @@ impl<'scene, 'ray> Seen<'scene, 'ray> {
         };
         let (surface, surface_error) = match self.coloring {
             // Each weight is correctly rounded.
-            Coloring::Vertices(colors) => mixed(colors, self.hit.weights().unwrap_or([f64::NAN; 3]), U),
+            Coloring::Vertices(colors) => {
+                self.hit.weights().map_or((DVec3::ZERO, f64::INFINITY), |weights| mixed(colors, weights, U))
+            }
             _ => self.plain_or_image(normal.vector, normal.error),
         };
         // `phong` rounds once more where there is an offset.
@@ -239,5 +241,40 @@ fn of_look(look: &Look) -> (Coloring<'_>, &Material) {
 /// The mixture of colours by weights, of which the first has twice the error of the others, and a bound of its error.
 fn mixed(colors: &[DVec3; 3], weights: [f64; 3], error: f64) -> (DVec3, f64) {
     let brightest = colors[0].max(colors[1]).max(colors[2]).max_element();
-    (interpolate(colors, weights), (4.1 * error + 12.0 * U) * brightest)
+    (interpolate(colors, weights), (4.1 * error + 12.0 * U) * brightest + f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use oracle::{Random, cases, exact, long};
+
+    use super::*;
+
+    #[test]
+    fn mixtures_are_within_their_bound() {
+        let mut random = Random::new(1);
+        for _ in 0..cases(100_000) {
+            let dark = if random.one_in(4) { random.power(-1070..0) } else { 1.0 };
+            let colors = [0; 3].map(|_| dark * random.point().abs());
+            let (beta, gamma) = (random.share(), random.share());
+            let (beta, gamma) = if beta + gamma > 1.0 { (1.0 - beta, 1.0 - gamma) } else { (beta, gamma) };
+            let size = random.pick(&[0.0, 1.0]) * random.power(-52..-4);
+            // The second and the third weight are off by the error, the first by what is left.
+            let [second, third] = [beta, gamma].map(|weight| weight + 0.999 * size * random.sign());
+            let first = 1.0 - second - third;
+            let error = size + 2.0 * U;
+            let (found, bound) = mixed(&colors, [first, second, third], error);
+            for axis in 0..3 {
+                let part = |i: usize, weight| exact(colors[i][axis]) * weight;
+                let [beta, gamma] = [beta, gamma].map(exact);
+                let truth = part(0, exact(1.0) - &beta - &gamma) + part(1, beta) + part(2, gamma);
+                let off = long(&(exact(found[axis]) - truth)).to_f64().value().abs();
+                assert!(off <= bound, "{colors:?} {first} {second} {third} {size:e}: {off:e} off, bound {bound:e}");
+            }
+        }
+        for error in [f64::NAN, f64::INFINITY] {
+            let (_, bound) = mixed(&[DVec3::ZERO; 3], [1.0, 0.0, 0.0], error);
+            assert!(bound.is_nan() || bound == f64::INFINITY);
+        }
+    }
 }
