@@ -122,7 +122,7 @@ impl<'a> SurfacePoint<'a> {
     }
 
     /// Whether the vectors as given are exact, so that they decide the sides.
-    pub(crate) fn is_exact(&self) -> bool {
+    fn is_exact(&self) -> bool {
         self.errors.point == 0.0 && self.errors.normal == 0.0 && self.offset == DVec3::ZERO
     }
 }

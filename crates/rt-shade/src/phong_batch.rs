@@ -98,8 +98,8 @@ fn kernel(points: &[SurfacePoint], lights: &[PointLight], colors: &mut [Shaded])
         let (shaded, errors) = group(points, lights);
         for (i, (seen, color)) in points.iter().zip(colors).enumerate() {
             *color = Shaded { color: shaded.at(i), error: errors[i] };
-            // Exact vectors decide the sides that rounding leaves open.
-            let open = !(color.error < f64::INFINITY) && seen.is_exact();
+            // An exact normal decides the eye's side where rounding leaves it open, and with an exact point a light's.
+            let open = !(color.error < f64::INFINITY) && seen.errors.normal == 0.0;
             if open || color.color.is_nan() || lights.is_empty() {
                 *color = phong(seen, lights);
             }
@@ -384,6 +384,27 @@ mod tests {
         let mut colors = [NOTHING; 3];
         phong_batch(&points, &lights, &mut colors);
         assert_eq!(colors.map(|shaded| shaded.color), points.map(|point| phong(&point, &lights).color));
+    }
+
+    #[test]
+    fn an_exact_normal_decides_the_eyes_side_beside_a_point_that_is_not_exact() {
+        let material = &Material { ambient: 0.1, diffuse: 0.6, specular: 0.3, shininess: 32.0 };
+        let mut random = oracle::Random::new(8);
+        let mut decided = 0;
+        for _ in 0..10_000 {
+            let (normal, x, y) = (random.point(), random.uniform(), random.uniform());
+            // From the side, within rounding.
+            let direction = DVec3::new(x, y, -(x * normal.x + y * normal.y) / normal.z);
+            let exact = SurfacePoint::new(DVec3::ZERO, direction, normal, DVec3::ONE, material);
+            let seen = SurfacePoint { errors: Errors { point: 1e-16, ..Errors::default() }, ..exact };
+            let lights = [PointLight { position: random.sign() * normal, color: DVec3::ONE }];
+            let mut colors = [NOTHING];
+            phong_batch(&[seen], &lights, &mut colors);
+            let alone = phong(&seen, &lights);
+            assert_eq!(colors[0].color, alone.color, "{seen:?}");
+            decided += usize::from(colors[0].error < f64::INFINITY);
+        }
+        assert!(decided > 9_000, "{decided}");
     }
 
     #[test]
