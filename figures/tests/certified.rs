@@ -33,7 +33,7 @@ const CASES: [Case; 10] = [
     Case { name: "plane", size: [24, 18, 1], ties: 0, golden: Some(65535), text: PLANE },
     Case { name: "seam", size: [25, 19, 1], ties: 0, golden: Some(255), text: SEAM },
     Case { name: "pole", size: [25, 19, 1], ties: 0, golden: None, text: POLE },
-    Case { name: "diagonal", size: [19, 19, 1], ties: 44, golden: Some(255), text: DIAGONAL },
+    Case { name: "diagonal", size: [19, 19, 1], ties: 4 * 5, golden: Some(255), text: DIAGONAL },
     Case { name: "halves", size: [24, 18, 2], ties: 0, golden: Some(255), text: HALVES },
     Case { name: "flat", size: [24, 18, 3], ties: 0, golden: Some(255), text: FLAT },
     Case { name: "coefficients", size: [24, 18, 1], ties: 0, golden: Some(65535), text: COEFFICIENTS },
@@ -225,7 +225,8 @@ radius = 1.0
 material = "g"
 "#;
 
-/// The same with borders of texels along both diagonals: two equal roots whose difference is never seen to be zero.
+/// The same with borders of texels along both diagonals: two equal roots whose difference is never seen to be zero, for
+/// five pixels on each of four arms.
 const DIAGONAL: &str = r#"
 [camera]
 eye = [0.0, 3.0, 0.0]
