@@ -685,7 +685,7 @@ mod tests {
         for i in 0..cases(LONG) {
             let [point, direction, normal] = [0; 3].map(|_| random.point());
             let light = lamp(4.0 * random.point());
-            let material = Material { shininess: f64::from(1 + i as u32 % 32), ..SHINY };
+            let material = Material { shininess: (1 + i % 32) as f64, ..SHINY };
             let surface = random.point().abs();
             let shaded = phong(&SurfacePoint::new(point, direction, normal, surface, &material), &[light]);
             let vectors = [&vector(point), &vector(direction), &vector(normal)];

@@ -99,6 +99,7 @@ fn kernel(points: &[SurfacePoint], lights: &[PointLight], colors: &mut [Shaded])
         for (i, (seen, color)) in points.iter().zip(colors).enumerate() {
             *color = Shaded { color: shaded.at(i), error: errors[i] };
             // An exact normal decides the eye's side where rounding leaves it open, and with an exact point a light's.
+            #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "false for NaN")]
             let open = !(color.error < f64::INFINITY) && seen.errors.normal == 0.0;
             if open || color.color.is_nan() || lights.is_empty() {
                 *color = phong(seen, lights);
@@ -149,7 +150,7 @@ fn group(points: &[SurfacePoint], lights: &[PointLight]) -> (Vectors, EachPoint)
         normal.set(i, turn * unit_normal.vector);
         color.set(i, ambient[i] * surface.at(i));
         normal_error[i] = relative(normal_error[i], unit_normal.inverse) + UNIT_ERROR;
-        point_error[i] = point_error[i] + 1.01 * U * norm(offset.at(i));
+        point_error[i] += 1.01 * U * norm(offset.at(i));
         brightest_surface[i] = brightest(surface.at(i));
     }
     for light in lights {

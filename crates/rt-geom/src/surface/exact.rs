@@ -35,6 +35,7 @@ pub struct EnclosedHit<'a> {
     surface: Surface,
 }
 
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 #[derive(Clone, Debug)]
 enum Surface {
     /// A sphere of radius 0.

@@ -92,6 +92,7 @@ fma_dispatch! {
     fn at_sphere(ray: &Ray, t: f64, sphere: &Sphere) -> Option<(Root, Refined)> = at_sphere_kernel;
 }
 
+#[expect(clippy::neg_cmp_op_on_partial_ord, reason = "false for NaN")]
 #[inline(always)]
 fn at_sphere_kernel<const FMA: bool>(ray: &Ray, t: f64, sphere: &Sphere) -> Option<(Root, Refined)> {
     let (d, a, radius) = (ray.direction(), ray.square(), sphere.radius());
@@ -163,6 +164,7 @@ fma_dispatch! {
     fn at_triangle(ray: &Ray, t: f64, triangle: &Triangle) -> Option<Refined> = at_triangle_kernel;
 }
 
+#[expect(clippy::neg_cmp_op_on_partial_ord, reason = "false for NaN")]
 #[inline(always)]
 fn at_triangle_kernel<const FMA: bool>(ray: &Ray, t: f64, triangle: &Triangle) -> Option<Refined> {
     let (d, edge) = (ray.direction(), triangle.size());
