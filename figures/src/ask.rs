@@ -108,7 +108,8 @@ pub fn rays(mesh: &Path, rays: &Path, style: Style) -> Result<(), Failure> {
             let crossings =
                 crossings.iter().map(|&Crossing { index, t, entering }| JsonCrossing { index, t, entering });
             let answer = Answer { hits, crossings: crossings.collect() };
-            text.push_str(&serde_json::to_string(&answer).expect("plain data"));
+            // Plain data: it cannot fail. A `t` beyond the largest double is null.
+            text.push_str(&serde_json::to_string(&answer).unwrap_or_default());
         } else {
             for (at, Hit { index, t }) in hits.iter().enumerate() {
                 let _ = write!(text, "{}{index} {t:?}", if at == 0 { "" } else { "  " });
@@ -170,7 +171,7 @@ fn stream<const N: usize, Q: Send + Sync>(
             if N == 3 && number_of_line == 1 && text.iter().all(u8::is_ascii_digit) && !text.is_empty() {
                 header = 2;
             }
-            if text.is_empty() && number_of_line > header || number_of_line <= header {
+            if text.is_empty() || number_of_line <= header {
                 continue;
             }
             match numbers(text, header > 0).and_then(&question) {

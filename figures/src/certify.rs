@@ -102,7 +102,8 @@ impl Certifier<'_> {
             return samples;
         }
         let pixel = Pixel { certifier: self, rays, hits, shaded: &shaded, lights };
-        let stages: [fn(&Pixel) -> Option<[u16; 3]>; 5] = [
+        type Stage = fn(&Pixel) -> Option<[u16; 3]>;
+        let stages: [Stage; 5] = [
             |pixel| pixel.enclosed::<2>(None),
             |pixel| pixel.enclosed::<4>(None),
             |pixel| pixel.enclosed::<8>(None),
@@ -176,10 +177,11 @@ fn certain(Shaded { color, error }: Shaded, count: usize, maxval: u16) -> Option
     let (count, most) = (count as f64, f64::from(maxval));
     let slack = 1.01 * most * (error / count + (count + 4.0) * U);
     let scaled = color.to_array().map(|channel| most * (channel / count) + 0.5);
-    #[expect(clippy::cast_possible_truncation, reason = "the whole part of a number from ¼ to maxval + ¾")]
-    let [low, high] = [-slack, slack].map(|slack| scaled.map(|scaled| (scaled + slack) as i32));
+    // Not negative, since the slack is below ¼; a cast saturates.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from ¼ to maxval + ¾")]
+    let [low, high] = [-slack, slack].map(|slack| scaled.map(|scaled| (scaled + slack) as u16));
     // False for NaN.
-    (slack < 0.25 && low == high).then(|| low.map(|whole| whole as u16))
+    (slack < 0.25 && low == high).then_some(low)
 }
 
 #[cfg(test)]

@@ -164,7 +164,7 @@ impl<'a> RayTile<'a> {
             let met = self.rays.iter().zip(&self.hits).filter_map(|(ray, hit)| hit.map(|hit| (ray, hit)));
             for (((ray, hit), point), shaded) in met.zip(&self.seen).zip(&mut self.shaded) {
                 // A side is open: that of a light in the plane of a surface, say.
-                if !(shaded.error < f64::INFINITY) {
+                if !shaded.is_known() {
                     *shaded = renderer.seen(ray, hit).sided(point, lights);
                 }
             }

@@ -190,7 +190,7 @@ fn check(class: &str, spheres: &[Sphere], answer: &Enclosing) -> f64 {
         assert!(contains(&answer.sphere, sphere), "{class}: {sphere:?} sticks out of {answer:?} in {spheres:?}");
     }
     let less = answer.sphere.radius().next_down();
-    let less = Sphere::new(answer.sphere.center(), less);
+    let less = Sphere::new(answer.sphere.center(), less).ok();
     assert!(
         less.is_none_or(|less| !spheres.iter().all(|sphere| contains(&less, sphere))),
         "{class}: a smaller radius than that of {answer:?} encloses {spheres:?}"

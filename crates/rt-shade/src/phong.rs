@@ -102,6 +102,16 @@ pub struct Shaded {
     pub error: f64,
 }
 
+impl Shaded {
+    /// Whether the bound says anything: no side is open.
+    #[inline]
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        // False for NaN.
+        self.error < f64::INFINITY
+    }
+}
+
 /// Who knows the sides of a surface where rounding leaves them open.
 pub trait Sides {
     /// Whether the normal as given is on the side that the ray comes from, or the ray runs along the surface; `None` if

@@ -99,8 +99,7 @@ fn kernel(points: &[SurfacePoint], lights: &[PointLight], colors: &mut [Shaded])
         for (i, (seen, color)) in points.iter().zip(colors).enumerate() {
             *color = Shaded { color: shaded.at(i), error: errors[i] };
             // An exact normal decides the eye's side where rounding leaves it open, and with an exact point a light's.
-            #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "false for NaN")]
-            let open = !(color.error < f64::INFINITY) && seen.errors.normal == 0.0;
+            let open = !color.is_known() && seen.errors.normal == 0.0;
             if open || color.color.is_nan() || lights.is_empty() {
                 *color = phong(seen, lights);
             }
