@@ -503,7 +503,7 @@ mod tests {
             let near = random.power(-600..-480);
             let (u, v, direction) = (random.share(), random.share(), random.point());
             let aim = corner + near * (u * e + v * f);
-            let Some(ray) = Ray::new(aim - near * direction, direction) else { continue };
+            let Ok(ray) = Ray::new(aim - near * direction, direction) else { continue };
             let Some(t) = triangle.closest(&ray, 0.0..f64::INFINITY) else { continue };
             let truth = Truth::at_triangle(&ray, &triangle);
             let hit = triangle.hit_point(&ray, t);
@@ -529,7 +529,7 @@ mod tests {
                 direction.length() * spacing * random.pick(&[0.3, 0.5, 1.0, 2.5, 1e3, 1e9]) * random.within(0.2, 1.5);
             let origin = DVec3::from_array(axis.to_array().map(|on| on * random.pick(&[0.0, 1.0, -power])));
             let center = origin + t * direction + 0.7 * radius * beside;
-            let (Some(sphere), Some(ray)) = (Sphere::new(center, radius), Ray::new(origin, direction)) else {
+            let (Ok(sphere), Ok(ray)) = (Sphere::new(center, radius), Ray::new(origin, direction)) else {
                 continue;
             };
             let Roots::Two(near, far) = sphere.roots(&ray) else { continue };
@@ -562,7 +562,7 @@ mod tests {
                 _ => center + 0.9 * radius * random.share() * axis,
             };
             let direction = random.power(-3..3) * if i % 2 == 0 { random.point() } else { random.sign() * axis };
-            let Some(ray) = Ray::new(origin, direction) else { continue };
+            let Ok(ray) = Ray::new(origin, direction) else { continue };
             hits += usize::from(check_sphere(&ray, &sphere, random).is_some());
         }
         assert!(hits > cases(LONG) / 30, "{hits}");
@@ -594,10 +594,10 @@ mod tests {
             let a = base + scale * random.point();
             let b = base + scale * random.point();
             let c = a + (b - a) * random.within(-0.5, 1.5) + scale * random.power(-30..-4) * random.point();
-            let Some(triangle) = Triangle::new(a, b, c) else { continue };
+            let Ok(triangle) = Triangle::new(a, b, c) else { continue };
             let aim = a + 0.5 * random.share() * (b - a) + 0.5 * random.share() * (c - a);
             let direction = scale * random.point();
-            let Some(ray) = Ray::new(aim - random.power(-4..6) * direction, direction) else { continue };
+            let Ok(ray) = Ray::new(aim - random.power(-4..6) * direction, direction) else { continue };
             let Some(t) = triangle.closest(&ray, 0.0..f64::INFINITY) else { continue };
             let [d, o] = [ray.direction(), ray.origin()].map(vector);
             let corners = triangle.vertices().map(|vertex| sub(&vector(vertex), &o));
