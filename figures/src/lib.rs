@@ -45,3 +45,8 @@ pub mod tile;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct FrontPage;
+
+// And that of the page on questions.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/questions.md")]
+struct Questions;

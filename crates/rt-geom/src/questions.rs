@@ -303,8 +303,8 @@ impl List {
 
     /// What [`Bvh::contains`] returns.
     #[must_use]
-    pub fn contains(&self, point: DVec3) -> Side {
-        let Some(ray) = counting_ray(point) else { return Side::Outside };
+    pub fn contains(&self, point: impl Into<DVec3>) -> Side {
+        let Some(ray) = counting_ray(point.into()) else { return Side::Outside };
         let mut around = Around::default();
         self.each(|_, shape| {
             around.add(match shape {
