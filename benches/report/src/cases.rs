@@ -2,7 +2,11 @@
 //!
 //! Everything follows from a fixed seed.
 
-use super::methods::COUNT;
+use std::f64::consts::{PI, TAU};
+
+use pxfm::{f_cos, f_sin};
+
+use super::methods::{COUNT, MATERIAL, SIDE};
 use super::random::{Random, combination, cross, join, length, plus, size};
 
 /// A named set of cases of `M` numbers.
@@ -113,8 +117,20 @@ fn aimed(r: &mut Random, weights: [f64; 3]) -> ([[f64; 3]; 3], [f64; 3]) {
 
 /// Rays and triangles: for the hit, and for the weights of the vertices at it.
 pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
-    let valid = |case: &[f64; 15]| case[3..6] != [0.0; 3];
-    let class = |name, make: fn(&mut Random) -> [f64; 15]| class(name, count, valid, make);
+    [triangles_hit, triangles_nearly_flat, triangles_in_plane, triangles_of_files, triangles_of_any_size]
+        .into_iter()
+        .flat_map(|classes| classes(count))
+        .collect()
+}
+
+/// A class of rays and triangles.
+fn rays(name: &'static str, count: usize, make: fn(&mut Random) -> [f64; 15]) -> Class<15> {
+    class(name, count, |case| case[3..6] != [0.0; 3], make)
+}
+
+/// Through the middle, an edge, a vertex.
+fn triangles_hit(count: usize) -> Vec<Class<15>> {
+    let class = |name, make| rays(name, count, make);
     vec![
         class("ordinary", |r| {
             let vertices = [0; 3].map(|_| r.vector(3.0));
@@ -131,6 +147,13 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let weights = [r.whole(1, 9), r.whole(1, 9), 0.0];
             ray_through(r, weights).map(|x| r.near(x))
         }),
+    ]
+}
+
+/// Nearly without area, and nearly edge-on.
+fn triangles_nearly_flat(count: usize) -> Vec<Class<15>> {
+    let class = |name, make| rays(name, count, make);
+    vec![
         class("sliver", |r| {
             let (a, edge) = (r.vector(3.0), r.vector(2.0));
             let b = plus(a, edge, 1.0);
@@ -146,6 +169,13 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let d = plus(along, r.unit(), size(r.within(-15.0, -6.0)));
             join(&[&plus(inside, d, -r.within(1.0, 3.0)), &d, &a, &b, &c])
         }),
+    ]
+}
+
+/// Planes through the origin, rays in the plane, no area.
+fn triangles_in_plane(count: usize) -> Vec<Class<15>> {
+    let class = |name, make| rays(name, count, make);
+    vec![
         class("plane through the origin", |r| {
             let (p, q) = (r.whole_vector(99), r.whole_vector(99));
             let [a, b, c] = [0; 3].map(|_| combination(p, r.whole(-9, 9), q, r.whole(-9, 9)));
@@ -168,6 +198,13 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let [origin, d, a, b, c] = [2, 1, 2, 2, 2].map(|reach| r.signed_vector(reach));
             join(&[&origin, &d, &a, &b, &c])
         }),
+    ]
+}
+
+/// Coordinates with few decimals.
+fn triangles_of_files(count: usize) -> Vec<Class<15>> {
+    let class = |name, make| rays(name, count, make);
+    vec![
         class("mesh in hundredths", |r| {
             // A ray in any direction at a triangle whose corners have two decimals, as many files of meshes have.
             let origin = r.vector(5.0);
@@ -184,6 +221,13 @@ pub(super) fn triangle(count: usize) -> Vec<Class<15>> {
             let target = plus(a, plus(b, a, -1.0), share);
             join(&[&origin, &plus(target, origin, -1.0), &a, &b, &c])
         }),
+    ]
+}
+
+/// From one end of the doubles to the other.
+fn triangles_of_any_size(count: usize) -> Vec<Class<15>> {
+    let class = |name, make| rays(name, count, make);
+    vec![
         class("subnormal", |r| {
             let [origin, a, b, c] = [9, 5, 5, 5].map(|reach| r.whole_vector(reach));
             let d = plus(r.whole_vector(3), origin, -1.0);
@@ -366,20 +410,55 @@ pub(super) fn mapping(count: usize) -> Vec<Class<3>> {
             let scale = size(r.within(-9.0, 9.0));
             r.vector(1.0).map(|x| x * scale)
         }),
-        class("seam", |r| {
-            let (x, y) = (-r.within(0.1, 1.0), r.within(-1.0, 1.0));
-            let length = (x * x + y * y).sqrt();
-            [x / length, y / length, r.exponent(-30.0, -6.0)]
-        }),
-        class("poles", |r| {
-            let tiny = size(r.within(-30.0, -6.0));
-            let pole = r.sign();
-            [r.within(-1.0, 1.0) * tiny, r.near(pole), r.within(-1.0, 1.0) * tiny]
-        }),
+        class("seam", seam),
+        class("poles", pole),
         class("axes, signed zeros", |r| r.signed_vector(1)),
         class("whole range", |r| [0; 3].map(|_| r.exponent(-307.0, 307.0))),
         class("subnormal", |r| r.whole_vector(20).map(|x| x * f64::from_bits(1))),
     ]
+}
+
+/// A normal off the axis, where every column ends.
+pub(super) fn texel(count: usize) -> Vec<Class<3>> {
+    let valid = |case: &[f64; 3]| case[0] != 0.0 || case[2] != 0.0;
+    let class = |name, make: fn(&mut Random) -> [f64; 3]| class(name, count, valid, make);
+    vec![
+        class("ordinary", |r| r.unit()),
+        class("any length", |r| {
+            let scale = size(r.within(-9.0, 9.0));
+            r.vector(1.0).map(|x| x * scale)
+        }),
+        class("border of two columns", |r| {
+            let turn = (r.whole(0, 14) / f64::from(SIDE) - 0.5) * TAU;
+            let (flat, y) = (r.within(0.1, 1.0), r.within(-1.0, 1.0));
+            [r.near(flat * f_cos(turn)), y, r.near(flat * f_sin(turn))]
+        }),
+        class("border of two rows", |r| {
+            let (turn, latitude) = (r.within(0.0, TAU), (0.5 - r.whole(1, 14) / f64::from(SIDE)) * PI);
+            let flat = f_cos(latitude);
+            [r.near(flat * f_cos(turn)), r.near(f_sin(latitude)), r.near(flat * f_sin(turn))]
+        }),
+        class("seam", seam),
+        class("poles", pole),
+        class("axes, signed zeros", |r| r.signed_vector(1)),
+        class("whole range", |r| {
+            // Where u is 1 less 10^-500, 2,048 bits tell.
+            [0; 3].map(|_| r.exponent(-250.0, 250.0))
+        }),
+        class("subnormal", |r| r.whole_vector(20).map(|x| x * f64::from_bits(1))),
+    ]
+}
+
+fn seam(r: &mut Random) -> [f64; 3] {
+    let (x, y) = (-r.within(0.1, 1.0), r.within(-1.0, 1.0));
+    let length = (x * x + y * y).sqrt();
+    [x / length, y / length, r.exponent(-30.0, -6.0)]
+}
+
+fn pole(r: &mut Random) -> [f64; 3] {
+    let tiny = size(r.within(-30.0, -6.0));
+    let pole = r.sign();
+    [r.within(-1.0, 1.0) * tiny, r.near(pole), r.within(-1.0, 1.0) * tiny]
 }
 
 /// Point, direction, normal, light, shininess.
@@ -418,6 +497,23 @@ pub(super) fn phong(count: usize) -> Vec<Class<13>> {
             let (point, normal) = (r.vector(2.0), r.unit());
             let light = plus(point, plus(r.unit(), normal, 1.0), size(r.within(-12.0, -3.0)));
             join(&[&point, &plus(r.unit(), normal, -1.0), &normal, &light, &[r.whole(1, 60)]])
+        }),
+        class("border of two bytes", |r| {
+            // The diffuse term alone: light from the eye's side, which sees the mirrored light behind itself.
+            let (point, normal) = (r.vector(2.0), r.unit());
+            let along = cross(normal, r.unit());
+            let along = along.map(|x| x / length(along));
+            let cosine = ((r.whole(34, 220) - 0.5) / 255.0 - MATERIAL.ambient) / MATERIAL.diffuse;
+            let towards = plus(normal.map(|x| x * cosine), along, (1.0 - cosine * cosine).max(0.0).sqrt());
+            let view = plus(along.map(|x| -x), normal, -1e-3);
+            join(&[&point, &view, &normal, &plus(point, towards, 4.0), &[r.whole(1, 60)]])
+        }),
+        class("light at the horizon, seen in its mirror", |r| {
+            let (point, normal) = (r.vector(2.0), r.unit());
+            let along = cross(normal, r.unit());
+            let towards = plus(along, normal, r.exponent(-18.0, -14.0));
+            let view = plus(along, normal, -1e-3);
+            join(&[&point, &view, &normal, &plus(point, towards, 5.0), &[r.whole(1, 20)]])
         }),
     ]
 }

@@ -33,8 +33,9 @@ pub(super) fn kernels(effort: Effort) -> Vec<Kernel> {
         measured!(plane, ["plane of a triangle", "", "coefficients"]),
         measured!(pseudo_inverse, ["pseudo-inverse", "rank", "entries"]),
         measured!(reflection, ["reflection", "", "components"]),
-        measured!(phong, ["Phong's light", "", "brightness"]),
+        measured!(phong, ["Phong's light", "byte", ""]),
         measured!(mapping, ["texture coordinates", "", "u and v"]),
+        measured!(texel, ["texture lookup", "texel", ""]),
         kernel(
             ["enclosing sphere", "all inside", "radius"],
             &methods::enclosing(),

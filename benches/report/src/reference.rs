@@ -1,12 +1,14 @@
 //! The exact answers: the oracle's, for the numbers of a case, its values computed in 400 bits and then rounded once.
 
+use std::cmp::Ordering;
+
 use oracle::enclosing::{Ball, smallest_radius};
 use oracle::{
-    Big, Crossing, Lamp, Projection, PseudoInverse, Quadratic, Reflection, Vector, exact, matrix, nearest_root,
-    quotient, rounded, shade, sub, uv, vector,
+    Big, Crossing, Lamp, Projection, PseudoInverse, Quadratic, Reflection, Vector, dot, exact, matrix, nearest_root,
+    power_of_two, quotient, rounded, shade, sign, sub, uv, vector,
 };
 
-use super::methods::{Answer, COUNT, MATERIAL};
+use super::methods::{Answer, COUNT, MATERIAL, SIDE};
 
 fn part(case: &[f64], from: usize) -> Vector {
     vector([case[from], case[from + 1], case[from + 2]])
@@ -89,14 +91,52 @@ pub(super) fn mapping(case: &[f64; 3]) -> Answer<2> {
     Answer { verdict: 0, values: uv(*case).each_ref().map(rounded) }
 }
 
-/// The brightness of a white point in one white light. A case is point, direction, normal, light, shininess.
-pub(super) fn phong(case: &[f64; 13]) -> Answer<1> {
+/// The texel that a normal points at, row by row.
+pub(super) fn texel(case: &[f64; 3]) -> Answer<0> {
+    let [x, y, z] = *case;
+    // Counted from the seam, where no bit is lost however near it is: for z > 0 this is 1 - u.
+    let [share, v] = uv([x, y, -z.abs()]);
+    let [from_seam, down] = [share, v].map(|x| x * exact(SIDE.into()));
+    let column = if z > 0.0 { i64::from(SIDE) + whole(&-from_seam) } else { whole(&from_seam) };
+    let [column, row] = [column, whole(&down)].map(|x| u8::try_from(x).expect("in 0..=1 times a byte"));
+    Answer::without_values(row.min(SIDE - 1) * SIDE + column % SIDE)
+}
+
+/// The byte of a white point in one white light. A case is point, direction, normal, light, shininess.
+pub(super) fn phong(case: &[f64; 13]) -> Answer<0> {
     let [point, direction, normal, position] = [0, 3, 6, 9].map(|from| part(case, from));
     let white = vector([1.0; 3]);
-    let lamp = Lamp { position, color: white.clone() };
+    // Exactly in the plane of the surface it does not shine, whichever way a root is rounded.
+    let shines = sign(&dot(&sub(&position, &point), &normal)) != Ordering::Equal;
+    let color = if shines { white.clone() } else { vector([0.0; 3]) };
+    let lamp = Lamp { position, color };
     let coefficients = [MATERIAL.ambient, MATERIAL.diffuse, MATERIAL.specular];
     let [brightness, ..] = shade(&point, &direction, &normal, &white, coefficients, case[12], &[lamp]);
-    Answer { verdict: 0, values: [rounded(&brightness)] }
+    Answer::without_values(byte(&brightness))
+}
+
+/// The byte of a brightness: `⌊255 c + ½⌋` of it, clamped.
+pub(super) fn byte(brightness: &Big) -> u8 {
+    let scaled = floor(&(brightness * exact(255.0) + exact(0.5)));
+    u8::try_from(scaled.clamp(0, 255)).expect("within a byte")
+}
+
+/// What differs by no more than this from an exact tie is one: numbers of 400 bits are good to far more, relative to
+/// the numbers near 1 that they are, and no other number of such short ones comes as close by chance.
+pub(super) fn tie() -> Big {
+    power_of_two(-250)
+}
+
+/// The whole part of a number; what lies below a whole number by less than a [`tie`] is taken for it.
+pub(super) fn floor(x: &Big) -> i64 {
+    whole(&(x + tie()))
+}
+
+/// The whole part of a number.
+fn whole(x: &Big) -> i64 {
+    #[expect(clippy::cast_possible_truncation, reason = "numbers of samples and texels")]
+    let whole = x.floor().to_f64().value() as i64;
+    whole
 }
 
 fn balls(case: &[f64; 4 * COUNT]) -> Vec<Ball> {
@@ -139,7 +179,12 @@ mod tests {
         assert_eq!(reflection(&[1.0, -1.0, 0.0, 0.0, 5.0, 0.0]).values, [1.0, 1.0, 0.0]);
         assert_eq!(mapping(&[3.0, 0.0, -3.0]).values, [0.375, 0.5]);
         let above = [0.0, 0.0, 0.0, 0.0, 0.0, -3.0, 0.0, 0.0, -0.5, 0.0, 0.0, 7.0, 9.0];
-        assert_eq!(phong(&above).values, [MATERIAL.ambient + MATERIAL.diffuse + MATERIAL.specular]);
+        assert_eq!(phong(&above).verdict, 255, "brighter than full");
+        let below = above.map(|x| if x == 7.0 { -7.0 } else { x });
+        assert_eq!(phong(&below).verdict, 32, "ambient alone, 31.875");
+        assert_eq!(texel(&[1.0, 0.0, 0.0]).verdict, 7 * SIDE + 7, "the middle");
+        assert_eq!([0.0, -0.0].map(|z| texel(&[-1.0, 0.0, z]).verdict), [7 * SIDE; 2], "both sides of the seam");
+        assert_eq!([1e-300, -1e-300].map(|z| texel(&[-1.0, 0.0, z]).verdict), [7 * SIDE + 14, 7 * SIDE], "beside it");
         let corners: [f64; 4 * COUNT] =
             std::array::from_fn(|i| f64::from(u8::from(i % 4 < 3 && (i / 4) & (1 << (i % 4)) != 0)));
         assert_eq!(enclosing(&corners).values[3], 0.75f64.sqrt());

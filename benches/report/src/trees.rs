@@ -9,6 +9,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
 
+use figures::objects::AHEAD;
 use glam::DVec3;
 use pxfm::f_cbrt;
 use rt_geom::{Bvh, Hit, Ray, Sphere, SphereTree};
@@ -60,135 +61,160 @@ pub(super) fn growth(effort: Effort) -> Vec<Growth> {
     counts.take_while(|&count| count <= effort.spheres).flat_map(|count| cloud(count, effort)).collect()
 }
 
+/// Measures all methods on one cloud.
 fn cloud(count: usize, effort: Effort) -> Vec<Growth> {
     progress(&format!("trees of {count} spheres"));
-    let mut random = Random::new(count as u64);
-    let radius = f_cbrt(0.1 * 8.0 / (count as f64 * 4.19));
-    let mut point = |size: f64| DVec3::from_array(random.vector(size));
-    let sphere = |center| Sphere::new(center, radius).expect("a cloud is made of valid spheres");
-    let spheres: Vec<Sphere> = (0..count).map(|_| sphere(point(1.0))).collect();
-    let rays: Vec<Ray> = std::iter::from_fn(|| {
-        let origin = point(1.0).normalize_or(DVec3::X) * 4.0;
-        Some(Ray::new(origin, point(1.0) - origin))
-    })
-    .flatten()
-    .take(2 * effort.cases)
-    .collect();
-    let within = 0.0..f64::INFINITY;
-    let few = &rays[..(LOOP / count).clamp(1, rays.len())];
+    let cloud = Cloud::new(count, effort);
+    let trees = Trees::new(&cloud.spheres);
+    let truth: Vec<Option<Hit>> = cloud.few().iter().map(|ray| cloud.plain(ray)).collect();
+    race(count, &contestants(&cloud, &trees), &truth, effort)
+}
 
-    let timed = |build: &dyn Fn()| {
-        let start = Instant::now();
-        build();
-        start.elapsed().as_secs_f64()
-    };
-    let listed = SphereTree::new(spheres.clone(), Vec::new());
-    let sorted = SphereTree::sorted(spheres.clone(), Vec::new());
-    let tree = Bvh::new(spheres.clone(), Vec::new());
-    let build_listed = timed(&|| drop(black_box(SphereTree::new(spheres.clone(), Vec::new()))));
-    let build_sorted = timed(&|| drop(black_box(SphereTree::sorted(spheres.clone(), Vec::new()))));
-    let build_tree = timed(&|| drop(black_box(Bvh::new(spheres.clone(), Vec::new()))));
+/// Spheres, and rays that aim at them.
+struct Cloud {
+    spheres: Vec<Sphere>,
+    rays: Vec<Ray>,
+}
 
-    let plain = |ray: &Ray| {
-        let hits = spheres.iter().enumerate();
-        let hits = hits.filter_map(|(index, sphere)| Some(Hit { index, t: sphere.closest(ray, within.clone())? }));
+impl Cloud {
+    fn new(count: usize, effort: Effort) -> Self {
+        let mut random = Random::new(count as u64);
+        let radius = f_cbrt(0.1 * 8.0 / (count as f64 * 4.19));
+        let mut point = |size: f64| DVec3::from_array(random.vector(size));
+        let sphere = |center| Sphere::new(center, radius).expect("a cloud is made of valid spheres");
+        let spheres = (0..count).map(|_| sphere(point(1.0))).collect();
+        let ray = || {
+            let origin = point(1.0).normalize_or(DVec3::X) * 4.0;
+            Some(Ray::new(origin, point(1.0) - origin))
+        };
+        Self { spheres, rays: std::iter::from_fn(ray).flatten().take(2 * effort.cases).collect() }
+    }
+
+    /// As many rays as the plain loop may ask in one round.
+    fn few(&self) -> &[Ray] {
+        &self.rays[..(LOOP / self.spheres.len()).clamp(1, self.rays.len())]
+    }
+
+    /// The closest hit, by asking every sphere.
+    fn plain(&self, ray: &Ray) -> Option<Hit> {
+        let hits = self.spheres.iter().enumerate();
+        let hits = hits.filter_map(|(index, sphere)| Some(Hit { index, t: sphere.closest(ray, AHEAD)? }));
         // The first of equal hits is kept: the lower index.
         hits.reduce(|best, hit| if hit.t < best.t { hit } else { best })
-    };
-    let truth: Vec<Option<Hit>> = few.iter().map(plain).collect();
-    let fewer = &few[..few.len().div_ceil(4)];
-    let all = &rays[..];
-    let each = |closest: &dyn Fn(&Ray) -> Option<Hit>, rays: &[Ray], hits: &mut [Option<Hit>]| {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = closest(ray);
+    }
+}
+
+/// What is built over the spheres of a cloud, and the seconds that it took.
+struct Trees {
+    listed: (SphereTree, f64),
+    sorted: (SphereTree, f64),
+    fast: (Bvh, f64),
+}
+
+impl Trees {
+    fn new(spheres: &[Sphere]) -> Self {
+        /// Builds once to keep, and once more, warm, for the time.
+        fn timed<T>(build: impl Fn() -> T) -> (T, f64) {
+            let built = build();
+            let start = Instant::now();
+            drop(black_box(build()));
+            (built, start.elapsed().as_secs_f64())
         }
-    };
+        Self {
+            listed: timed(|| SphereTree::new(spheres.to_vec(), Vec::new())),
+            sorted: timed(|| SphereTree::sorted(spheres.to_vec(), Vec::new())),
+            fast: timed(|| Bvh::new(spheres.to_vec(), Vec::new())),
+        }
+    }
+}
+
+fn contestants<'a>(cloud: &'a Cloud, Trees { listed, sorted, fast }: &'a Trees) -> [Contestant<'a>; 5] {
+    let (few, all) = (cloud.few(), &cloud.rays[..]);
+    let fewer = &few[..few.len().div_ceil(4)];
     let tests = |tree: &SphereTree, rays: &[Ray]| {
-        let visits = rays.iter().map(|ray| tree.closest_counted(ray, within.clone()).1);
+        let visits = rays.iter().map(|ray| tree.closest_counted(ray, AHEAD).1);
         Some(visits.map(|visits| visits.nodes + visits.tests).sum::<usize>() as f64 / rays.len() as f64)
     };
-    let by = |tree: &'_ SphereTree| {
-        let tree = tree.clone();
-        move |ray: &Ray| tree.closest(ray, 0.0..f64::INFINITY)
-    };
-    let (by_listed, by_sorted) = (by(&listed), by(&sorted));
-    let one_by_one = |ray: &Ray| tree.closest(ray, 0.0..f64::INFINITY);
-    let methods = [
+    [
         Contestant {
             name: "plain loop",
             ours: false,
             rays: few,
             build: 0.0,
-            tests: Some(count as f64),
-            trace: Box::new(|rays, hits| each(&plain, rays, hits)),
+            tests: Some(cloud.spheres.len() as f64),
+            trace: each(|ray| cloud.plain(ray)),
         },
         Contestant {
             name: "SphereTree, as listed",
             ours: false,
             rays: fewer,
-            build: build_listed,
-            tests: tests(&listed, fewer),
-            trace: Box::new(|rays, hits| each(&by_listed, rays, hits)),
+            build: listed.1,
+            tests: tests(&listed.0, fewer),
+            trace: each(|ray| listed.0.closest(ray, AHEAD)),
         },
         Contestant {
             name: "SphereTree, sorted",
             ours: true,
             rays: all,
-            build: build_sorted,
-            tests: tests(&sorted, all),
-            trace: Box::new(|rays, hits| each(&by_sorted, rays, hits)),
+            build: sorted.1,
+            tests: tests(&sorted.0, all),
+            trace: each(|ray| sorted.0.closest(ray, AHEAD)),
         },
         Contestant {
             name: "Bvh",
             ours: true,
             rays: all,
-            build: build_tree,
+            build: fast.1,
             tests: None,
-            trace: Box::new(|rays, hits| each(&one_by_one, rays, hits)),
+            trace: each(|ray| fast.0.closest(ray, AHEAD)),
         },
         Contestant {
             name: "Bvh, batch",
             ours: true,
             rays: all,
-            build: build_tree,
+            build: fast.1,
             tests: None,
-            trace: Box::new(|rays, hits| tree.closest_batch(rays, 0.0..f64::INFINITY, hits)),
+            trace: Box::new(|rays, hits| fast.0.closest_batch(rays, AHEAD, hits)),
         },
-    ];
-    let mut times = vec![Vec::new(); methods.len()];
-    let mut hits = vec![None; rays.len()];
-    let mut different = vec![0; methods.len()];
+    ]
+}
+
+/// Asks ray by ray.
+fn each<'a>(closest: impl Fn(&Ray) -> Option<Hit> + 'a) -> Trace<'a> {
+    Box::new(move |rays, hits| {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = closest(ray);
+        }
+    })
+}
+
+/// Times the contestants in turn and compares their hits with the true ones, which begin with the first ray.
+fn race(count: usize, contestants: &[Contestant], truth: &[Option<Hit>], effort: Effort) -> Vec<Growth> {
+    let mut times = vec![Vec::new(); contestants.len()];
+    let mut different = vec![0; contestants.len()];
+    let mut hits = vec![None; 2 * effort.cases];
     for _ in 0..effort.rounds {
-        for (i, Contestant { rays, trace, .. }) in methods.iter().enumerate() {
+        for (i, Contestant { rays, trace, .. }) in contestants.iter().enumerate() {
             let start = Instant::now();
             trace(black_box(rays), &mut hits[..rays.len()]);
             times[i].push(start.elapsed().as_nanos() as f64 / rays.len() as f64);
-            let same = |(hit, truth): (&Option<Hit>, &Option<Hit>)| {
-                let key = |hit: &Hit| (hit.index, hit.t.to_bits());
-                hit.as_ref().map(key) == truth.as_ref().map(key)
-            };
-            different[i] = hits[..rays.len()].iter().zip(&truth).filter(|&pair| !same(pair)).count();
+            let key = |hit: &Option<Hit>| hit.as_ref().map(|hit| (hit.index, hit.t.to_bits()));
+            different[i] = hits[..rays.len()].iter().zip(truth).filter(|(hit, truth)| key(hit) != key(truth)).count();
         }
     }
-    methods
-        .into_iter()
-        .zip(times)
-        .zip(different)
-        .map(|((contestant, times), different)| {
-            let Contestant { name, ours, rays, build, tests, .. } = contestant;
-            Growth {
-                method: name.to_owned(),
-                ours,
-                spheres: count,
-                rays: rays.len(),
-                build,
-                time: Time::of(times),
-                different,
-                compared: truth.len().min(rays.len()),
-                tests,
-            }
-        })
-        .collect()
+    let measured = contestants.iter().zip(times).zip(different);
+    let rows = measured.map(|((&Contestant { name, ours, rays, build, tests, .. }, times), different)| Growth {
+        method: name.to_owned(),
+        ours,
+        spheres: count,
+        rays: rays.len(),
+        build,
+        time: Time::of(times),
+        different,
+        compared: truth.len().min(rays.len()),
+        tests,
+    });
+    rows.collect()
 }
 
 /// Returns the diagram of the time for one ray against the number of spheres, both logarithmic.

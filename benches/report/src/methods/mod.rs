@@ -15,6 +15,7 @@ mod quadratic;
 pub(super) mod real;
 mod reflection;
 mod sphere;
+mod texel;
 mod triangle;
 
 pub(super) use barycentric::barycentric;
@@ -28,4 +29,5 @@ pub(super) use pseudo_inverse::pseudo_inverse;
 pub(super) use quadratic::quadratic;
 pub(super) use reflection::reflection;
 pub(super) use sphere::{sphere, textbook_roots};
+pub(super) use texel::{SIDE, texel};
 pub(super) use triangle::{crossing, triangle};

@@ -1,14 +1,20 @@
-//! The exact picture: what is seen is decided by the reference, and its colour computed in 400 bits; only the lookup in
-//! a texture, between exact coordinates, is in doubles.
+//! The exact picture: what is seen is decided by the reference; its colour, texels and bytes too, are numbers of 400
+//! bits.
+//!
+//! That leaves 250 bits behind the point in the scenes at hand, whose lengths differ by less than `2^80`. What differs
+//! from equality by less than [`tie`] is taken for it: a light in the plane of a surface, a coordinate at the border of
+//! a texel, a colour between two bytes.
 
 use glam::DVec3;
 use oracle::{
-    Big, Crossing, Lamp, coordinates, cross, exact, long, nearest_root, point_at, rounded, shade, sub, vector,
+    Big, Crossing, Lamp, Vector, coordinates, cross, dot, exact, long, nearest_root, point_at, rounded, shade, sub,
+    unit, vector,
 };
 use rayon::prelude::*;
 use rt_geom::{Ray, Sphere};
+use rt_shade::Texture;
 
-use super::pixels::samples;
+use crate::reference::{byte, floor, tie};
 use figures::camera::{Size, View};
 use figures::scene::{Filter, Paint, Scene};
 
@@ -20,14 +26,14 @@ pub(super) fn picture(scene: &Scene, view: &View) -> Vec<u8> {
         .iter()
         .map(|light| Lamp { position: vector(light.position), color: vector(light.color) })
         .collect();
-    let pixel = |i: u32| samples(color(scene, &lamps, &view.ray(i % width, i / width)));
+    let pixel = |i: u32| color(scene, &lamps, &view.ray(i % width, i / width)).each_ref().map(byte);
     (0..width * height).into_par_iter().flat_map_iter(pixel).collect()
 }
 
 /// The colour that a ray brings back.
-fn color(scene: &Scene, lamps: &[Lamp], ray: &Ray) -> DVec3 {
+fn color(scene: &Scene, lamps: &[Lamp], ray: &Ray) -> Vector {
     let (origin, direction) = (vector(ray.origin()), vector(ray.direction()));
-    let Some((t, index)) = closest(scene, ray, &origin, &direction) else { return scene.background };
+    let Some((t, index)) = closest(scene, ray, &origin, &direction) else { return vector(scene.background) };
     let point = point_at(&origin, &direction, &t);
     let (look, normal, surface) = match scene.spheres.get(index) {
         Some(sphere) => {
@@ -58,8 +64,24 @@ fn color(scene: &Scene, lamps: &[Lamp], ray: &Ray) -> DVec3 {
     };
     let material = &look.material;
     let coefficients = [material.ambient, material.diffuse, material.specular];
-    let color = shade(&point, &direction, &normal, &surface, coefficients, material.shininess, lamps);
-    DVec3::from_array(color.each_ref().map(rounded))
+    if lamps.is_empty() {
+        return surface;
+    }
+    let out_of_plane: Vec<Lamp> = lamps.iter().filter(|lamp| !is_in_plane(lamp, &point, &normal)).cloned().collect();
+    // Without a light the colour would be flat.
+    let dark = Lamp { position: sub(&point, &direction), color: vector(DVec3::ZERO) };
+    let lamps = if out_of_plane.is_empty() { vec![dark] } else { out_of_plane };
+    shade(&point, &direction, &normal, &surface, coefficients, material.shininess, &lamps)
+}
+
+/// Whether a lamp lies in the plane that touches the surface, and so does not shine on it.
+fn is_in_plane(lamp: &Lamp, point: &Vector, normal: &Vector) -> bool {
+    let towards = sub(&lamp.position, point);
+    let is_there = towards.iter().all(|x| *x == Big::ZERO);
+    is_there || {
+        let cosine = dot(&unit(&towards), &unit(normal));
+        cosine < tie() && cosine > -tie()
+    }
 }
 
 /// The closest object on a ray, and its `t`.
@@ -93,12 +115,41 @@ fn paint_at(paint: &Paint, normal: &[Big; 3]) -> [Big; 3] {
             let [x, y, z] = normal.clone();
             let place = [x, y, if *mirrored { z } else { -z }].map(|c| long(&c));
             let [u, v] = coordinates(&place, [0, 1, 2].map(|i| place[i] < Big::ZERO));
-            vector(match filter {
-                Filter::Nearest => texture.nearest(rounded(&u), rounded(&v)),
-                Filter::Bilinear => texture.bilinear(rounded(&u), rounded(&v)),
-            })
+            match filter {
+                Filter::Nearest => {
+                    let [width, height] = size(texture);
+                    vector(texel(texture, floor(&(u * exact(width))), floor(&(v * exact(height)))))
+                }
+                Filter::Bilinear => bilinear(texture, &u, &v),
+            }
         }
     }
+}
+
+/// Columns and rows.
+fn size(texture: &Texture) -> [f64; 2] {
+    [texture.width(), texture.height()].map(|side| side as f64)
+}
+
+/// The colour of a texel; columns wrap around, rows end.
+fn texel(texture: &Texture, column: i64, row: i64) -> DVec3 {
+    let [width, height] = size(texture);
+    let [column, row] = [(column as f64).rem_euclid(width), (row as f64).clamp(0.0, height - 1.0)];
+    texture.nearest((column + 0.5) / width, (row + 0.5) / height)
+}
+
+/// The mixture of the four texels around a point by its distances from their centers.
+fn bilinear(texture: &Texture, u: &Big, v: &Big) -> Vector {
+    let [width, height] = size(texture).map(exact);
+    let (x, y) = (u * width - exact(0.5), v * height - exact(0.5));
+    let (column, row) = (floor(&x), floor(&y));
+    let (across, down) = (x - exact(column as f64), y - exact(row as f64));
+    let mixed = |a: &Vector, b: &Vector, share: &Big| [0, 1, 2].map(|i| &a[i] + (&b[i] - &a[i]) * share);
+    let [upper, lower] = [row, row + 1].map(|row| {
+        let [left, right] = [column, column + 1].map(|column| vector(texel(texture, column, row)));
+        mixed(&left, &right, &across)
+    });
+    mixed(&upper, &lower, &down)
 }
 
 /// Whether a ray passes far beside a sphere: the distance of center and line, in doubles, is above the radius by more

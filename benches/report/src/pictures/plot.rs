@@ -102,6 +102,7 @@ fn title(group: Group, pictures: &[Pictured]) -> String {
             format!("{} spheres", crowd.map_or(0, |pictured| pictured.objects))
         }
         Group::Hard => "far, edges, ground".to_owned(),
+        Group::Certified => "to the last byte".to_owned(),
     }
 }
 

@@ -22,6 +22,8 @@ pub(crate) enum Group {
     Figures,
     Crowd,
     Hard,
+    /// Made for the last byte: drawn by the textbook and by the program alone.
+    Certified,
 }
 
 /// What was measured of one method on one scene.
