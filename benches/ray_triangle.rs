@@ -8,7 +8,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
 use oracle::Random;
-use rt_geom::{Inside, Ray, Triangle, inside_triangle};
+use rt_geom::{PointInTriangle, Ray, Triangle, inside_triangle};
 
 /// Inputs of each bench: enough that branches are not learnt by heart.
 const COUNT: usize = 4096;
@@ -157,7 +157,7 @@ fn inside(criterion: &mut Criterion) {
     group.bench_function("exact", |b| {
         b.iter(|| {
             for (point, triangle) in &points {
-                black_box(inside_triangle(black_box(*point), triangle) != Inside::Outside);
+                black_box(inside_triangle(black_box(*point), triangle) != PointInTriangle::Outside);
             }
         });
     });

@@ -1,7 +1,7 @@
 //! Each slip of the report that `docs/errata.md` lists stays corrected.
 
 use glam::DVec3;
-use rt_geom::{Bvh, Inside, Ray, Sphere, Triangle, inside_triangle, plane_by_pseudo_inverse};
+use rt_geom::{Bvh, PointInTriangle, Ray, Sphere, Triangle, inside_triangle, plane_by_pseudo_inverse};
 use rt_math::{Roots, reflect};
 use rt_shade::{Material, PointLight, SurfacePoint, Texture, phong, sphere_uv, texture_uv};
 
@@ -123,21 +123,21 @@ fn the_boundary_belongs_to_the_triangle() {
         [([1.0, 1.0, 0.0], true), ([2.0, 2.0, 0.0], true), ([4.0, 0.0, 0.0], true), ([3.0, 2.0, 0.0], false)]
     {
         let verdict = inside_triangle(point.into(), &flat);
-        assert_eq!(!matches!(verdict, Inside::Outside), inside, "{point:?} is {verdict:?}");
+        assert_eq!(!matches!(verdict, PointInTriangle::Outside), inside, "{point:?} is {verdict:?}");
     }
 }
 
 #[test]
 fn a_point_off_the_plane_is_judged_by_its_projection() {
     let flat = triangle([0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]);
-    assert!(matches!(inside_triangle(DVec3::new(1.0, 1.0, 9.0), &flat), Inside::Interior));
-    assert!(matches!(inside_triangle(DVec3::new(3.0, 3.0, 9.0), &flat), Inside::Outside));
+    assert!(matches!(inside_triangle(DVec3::new(1.0, 1.0, 9.0), &flat), PointInTriangle::Interior));
+    assert!(matches!(inside_triangle(DVec3::new(3.0, 3.0, 9.0), &flat), PointInTriangle::Outside));
 }
 
 #[test]
 fn a_triangle_without_area_contains_nothing() {
     let line = triangle([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]);
-    assert!(matches!(inside_triangle(DVec3::X, &line), Inside::Outside));
+    assert!(matches!(inside_triangle(DVec3::X, &line), PointInTriangle::Outside));
 }
 
 #[test]

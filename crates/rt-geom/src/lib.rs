@@ -28,4 +28,4 @@ pub use shape::{Hit, Shape, Visits};
 pub use sphere::{Side, Sphere, SphereError};
 pub use sphere_tree::SphereTree;
 pub use surface::{Bounded, EnclosedHit, Estimate, HitPoint};
-pub use triangle::{Inside, Triangle, TriangleError, Verdict, inside_triangle};
+pub use triangle::{PointInTriangle, Triangle, TriangleError, Verdict, inside_triangle};

@@ -207,9 +207,9 @@ impl Bvh {
     /// assert_eq!(tree.contains(DVec3::new(0.25, 0.25, 0.5f64.next_up())), Side::Outside);
     /// ```
     #[must_use]
-    pub fn contains(&self, point: DVec3) -> Side {
-        let side =
-            counting_ray(point).and_then(|ray| self.query(&ray, AHEAD, Around::default(), &mut Visits::default()));
+    pub fn contains(&self, point: impl Into<DVec3>) -> Side {
+        let ray = counting_ray(point.into());
+        let side = ray.and_then(|ray| self.query(&ray, AHEAD, Around::default(), &mut Visits::default()));
         side.unwrap_or(Side::Outside)
     }
 

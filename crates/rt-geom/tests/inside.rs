@@ -5,19 +5,19 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 use oracle::{Place, Projection, Random, cases, is_rounded_quotient, scale_point, sign};
-use rt_geom::{Inside, Triangle, inside_triangle};
+use rt_geom::{PointInTriangle, Triangle, inside_triangle};
 
 /// Random cases per class with `RT_LONG`, instead of ten thousand.
 const LONG: usize = 500_000;
 
-fn check(point: DVec3, vertices: [DVec3; 3]) -> Inside {
+fn check(point: DVec3, vertices: [DVec3; 3]) -> PointInTriangle {
     let [a, b, c] = vertices;
     let (triangle, truth) = (Triangle::new(a, b, c).unwrap(), Projection::new(point, vertices));
     let expected = match truth.place() {
-        Place::Interior => Inside::Interior,
-        Place::Edge(_) => Inside::Edge,
-        Place::Vertex(_) => Inside::Vertex,
-        Place::Miss | Place::Parallel | Place::Degenerate => Inside::Outside,
+        Place::Interior => PointInTriangle::Interior,
+        Place::Edge(_) => PointInTriangle::Edge,
+        Place::Vertex(_) => PointInTriangle::Vertex,
+        Place::Miss | Place::Parallel | Place::Degenerate => PointInTriangle::Outside,
     };
     assert_eq!(inside_triangle(point, &triangle), expected, "{point:?} {triangle:?}");
     let coplanar = sign(&truth.height) == Ordering::Equal;
@@ -129,7 +129,7 @@ fn a_point_that_is_not_finite_is_outside() {
     let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let point = DVec3::new(0.25, bad, 0.0);
-        assert_eq!(inside_triangle(point, &triangle), Inside::Outside);
+        assert_eq!(inside_triangle(point, &triangle), PointInTriangle::Outside);
         assert_eq!(triangle.barycentric(point), None);
         assert!(!triangle.is_coplanar(point));
     }

@@ -52,7 +52,7 @@ fn check(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3], rng: &mut Rando
         assert!(same, "expected {expected:?}, found {found:?} in {within:?}: {}", context());
         assert_eq!(triangle.any(&ray, within.clone()), found.is_some(), "{within:?}: {}", context());
     }
-    let weights = triangle.hit_barycentric(&ray);
+    let weights = triangle.line_barycentric(&ray);
     let both = triangle.closest_with_barycentric(&ray, 0.0..f64::INFINITY);
     let each = triangle.closest(&ray, 0.0..f64::INFINITY).zip(weights);
     assert_eq!(format!("{both:?}"), format!("{each:?}"), "{}", context());

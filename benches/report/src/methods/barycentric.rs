@@ -17,7 +17,7 @@ pub(crate) fn barycentric() -> Vec<Method<15, 3>> {
             answer(hit.then(|| areas.map(|area| area / sum)))
         }),
         Method::new("areas at the hit point", "Ericson, Real-Time Collision Detection, section 3.4", areas),
-        Method::ours_on("ours", shapes, |(ray, triangle)| answer(triangle.hit_barycentric(ray))),
+        Method::ours_on("ours", shapes, |(ray, triangle)| answer(triangle.line_barycentric(ray))),
     ]
 }
 

@@ -2,7 +2,7 @@
 //! 1 inside, boundary included; there is no value.
 
 use glam::DVec3;
-use rt_geom::{Inside, Triangle, inside_triangle};
+use rt_geom::{PointInTriangle, Triangle, inside_triangle};
 
 use super::method::{Answer, Method};
 use super::real::{Components, Float, cross, dot, dvec3, sub, vector};
@@ -27,7 +27,7 @@ pub(crate) fn inside() -> Vec<Method<12, 0>> {
         })
         .verdict_alone(),
         Method::ours_on("ours", shapes, move |(point, triangle)| {
-            verdict(inside_triangle(*point, triangle) != Inside::Outside)
+            verdict(inside_triangle(*point, triangle) != PointInTriangle::Outside)
         })
         .verdict_alone(),
     ]

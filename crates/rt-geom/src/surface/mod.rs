@@ -187,7 +187,7 @@ impl<'a> HitPoint<'a> {
     pub fn weights(&self) -> Option<[f64; 3]> {
         match &self.shape {
             Shape::Sphere(_) => None,
-            Shape::Triangle(triangle) => triangle.hit_barycentric(self.ray),
+            Shape::Triangle(triangle) => triangle.line_barycentric(self.ray),
         }
     }
 

@@ -25,7 +25,7 @@ const FARTHEST: f64 = power_of_two(200);
 
 /// Where a point, projected orthogonally into a triangle's plane, lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inside {
+pub enum PointInTriangle {
     /// In the interior.
     Interior,
     /// In an edge, not at its ends.
@@ -44,29 +44,29 @@ pub enum Inside {
 ///
 /// ```
 /// use glam::DVec3;
-/// use rt_geom::{Inside, Triangle, inside_triangle};
+/// use rt_geom::{PointInTriangle, Triangle, inside_triangle};
 ///
 /// let triangle = Triangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
-/// assert_eq!(inside_triangle(DVec3::new(0.25, 0.25, 7.0), &triangle), Inside::Interior);
-/// assert_eq!(inside_triangle(DVec3::new(0.5, 0.5, 0.0), &triangle), Inside::Edge);
-/// assert_eq!(inside_triangle(DVec3::Y, &triangle), Inside::Vertex);
-/// assert_eq!(inside_triangle(DVec3::ONE, &triangle), Inside::Outside);
+/// assert_eq!(inside_triangle(DVec3::new(0.25, 0.25, 7.0), &triangle), PointInTriangle::Interior);
+/// assert_eq!(inside_triangle(DVec3::new(0.5, 0.5, 0.0), &triangle), PointInTriangle::Edge);
+/// assert_eq!(inside_triangle(DVec3::Y, &triangle), PointInTriangle::Vertex);
+/// assert_eq!(inside_triangle(DVec3::ONE, &triangle), PointInTriangle::Outside);
 /// ```
 #[must_use]
-pub fn inside_triangle(point: DVec3, triangle: &Triangle) -> Inside {
+pub fn inside_triangle(point: DVec3, triangle: &Triangle) -> PointInTriangle {
     if !point.is_finite() {
-        return Inside::Outside;
+        return PointInTriangle::Outside;
     }
     let turns = filtered_signs(point, triangle).unwrap_or_else(|| exact_signs(point, triangle));
     if turns.contains(&Ordering::Less) {
-        return Inside::Outside;
+        return PointInTriangle::Outside;
     }
     match turns.iter().filter(|&&turn| turn == Ordering::Equal).count() {
-        0 => Inside::Interior,
-        1 => Inside::Edge,
-        2 => Inside::Vertex,
+        0 => PointInTriangle::Interior,
+        1 => PointInTriangle::Edge,
+        2 => PointInTriangle::Vertex,
         // The turns add up to n . n, so the triangle is degenerate.
-        _ => Inside::Outside,
+        _ => PointInTriangle::Outside,
     }
 }
 
@@ -118,7 +118,7 @@ impl Triangle {
         let [a, b, c] = self.vertices();
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let near = point.cmpge(low).all() && point.cmple(high).all();
-        near && self.is_coplanar(point) && inside_triangle(point, self) != Inside::Outside
+        near && self.is_coplanar(point) && inside_triangle(point, self) != PointInTriangle::Outside
     }
 }
 

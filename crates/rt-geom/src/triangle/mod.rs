@@ -30,7 +30,7 @@ use crate::Ray;
 use crate::ray::{FilterVerdict, PreparedRay, larger, max_abs};
 pub(crate) use exact::{height_sign, slope_sign};
 use filter::{filter, surely_leans};
-pub use locate::{Inside, inside_triangle};
+pub use locate::{PointInTriangle, inside_triangle};
 
 /// Where the filter's bounds are proved: the edges are at least this long, `2^-150`, and the triangle with the ray's
 /// origin is smaller than `2^300`. Nothing overflows there, and what underflows is far below the bounds.
@@ -247,12 +247,12 @@ impl Triangle {
     /// The weights lie in 0..=1, and their sum is 1 but for the rounding of each. A weight is zero exactly on the
     /// opposite edge, or where it underflows.
     #[must_use]
-    pub fn hit_barycentric(&self, ray: &Ray) -> Option<[f64; 3]> {
+    pub fn line_barycentric(&self, ray: &Ray) -> Option<[f64; 3]> {
         filter::weights(self, ray)
     }
 
     /// Returns `t` and the weights of the three vertices at the hit, if it is in the range: what [`Self::closest`] and
-    /// [`Self::hit_barycentric`] give, in less time than both.
+    /// [`Self::line_barycentric`] give, in less time than both.
     #[must_use]
     pub fn closest_with_barycentric(&self, ray: &Ray, within: Range<f64>) -> Option<(f64, [f64; 3])> {
         filter::closest_with_weights(self, ray, within.start, within.end)
