@@ -876,4 +876,22 @@ mod tests {
         // A normal that turns takes the mirrored light twice as far; the bound allows four times, for lengths.
         assert!(sharpest[0] > 0.9 && sharpest[1] > 0.15, "{sharpest:?}");
     }
+
+    #[test]
+    fn what_a_long_offset_loses_is_within_the_bound() {
+        let mut random = Random::new(17);
+        for _ in 0..cases(LONG) / 10 {
+            let (direction, normal, offset) = (random.point(), random.point(), random.power(0..50) * random.point());
+            let material = Material { ambient: 0.0, diffuse: 1.0, specular: 0.0, shininess: 1.0 };
+            let (point, light) = (random.point() - offset, lamp(random.point()));
+            let seen = SurfacePoint { offset, ..SurfacePoint::new(point, direction, normal, DVec3::ONE, &material) };
+            let shaded = phong(&seen, &[light]);
+            if shaded.error < f64::INFINITY {
+                let place = [0, 1, 2].map(|axis| exact(point[axis]) + exact(offset[axis]));
+                let error =
+                    distance(&shaded, [&place, &vector(direction), &vector(normal)], DVec3::ONE, &material, &light);
+                assert!(error <= shaded.error, "{seen:?} {light:?} {shaded:?} is {error:e} off");
+            }
+        }
+    }
 }
