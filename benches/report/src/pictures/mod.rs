@@ -74,7 +74,7 @@ pub(super) fn pictures(effort: Effort) -> Vec<Pictured> {
     for (name, text, _) in HARD {
         pictured.push(measure(name, Group::Hard, true, || embedded(text, name), effort));
     }
-    let small = Effort { rows: (effort.rows / 3).max(LEAST_ROWS), ..effort };
+    let small = Effort { rows: (effort.rows / 6).max(LEAST_ROWS), ..effort };
     for Made { name, scene, shown, .. } in scenes::certified() {
         pictured.push(measure(&name, Group::Certified, shown, scene, small));
     }

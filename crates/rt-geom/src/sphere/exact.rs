@@ -1,5 +1,5 @@
 //! The stages after the filter and the Newton step: fixed-point numbers of one limb, double-double, fixed-point numbers
-//! of two limbs, integers of any size; in the order of their cost.
+//! of two and three limbs, integers of any size; in the order of their cost.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -59,6 +59,9 @@ fn ask<R>(
         decided(Stage::DoubleDouble);
         of_roots(roots)
     } else if let Some(equation) = Equation::<2, 4, 8>::new(sphere, ray) {
+        decided(Stage::Fixed);
+        of_equation(&equation)
+    } else if let Some(equation) = Equation::<3, 6, 12>::new(sphere, ray) {
         decided(Stage::Fixed);
         of_equation(&equation)
     } else {
@@ -334,6 +337,7 @@ mod tests {
                 double_double_roots(sphere, ray),
                 Equation::<1, 2, 4>::new(sphere, ray).map(|equation| equation.roots()),
                 Equation::<2, 4, 8>::new(sphere, ray).map(|equation| equation.roots()),
+                Equation::<3, 6, 12>::new(sphere, ray).map(|equation| equation.roots()),
             ] {
                 assert!(roots.is_none_or(|roots| roots == integers), "{sphere:?} {ray:?}: {roots:?}");
             }

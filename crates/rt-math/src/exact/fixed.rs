@@ -436,7 +436,6 @@ impl<const LIMBS: usize> Window<LIMBS> {
     /// The magnitude in units, and the bits that are lost below the unit.
     #[inline(always)]
     fn place(self, x: f64) -> ([u64; LIMBS], u64) {
-        const { assert!(LIMBS == 1 || LIMBS == 2) };
         let mut limbs = [0; LIMBS];
         let (mantissa, exponent) = mantissa_and_weight(x);
         // The first bit of the significand as high as it may stand, and by how much it stands lower.
@@ -445,6 +444,20 @@ impl<const LIMBS: usize> Window<LIMBS> {
             let (top, down) = (mantissa << 8, down.min(63));
             limbs[0] = top >> down;
             top ^ (limbs[0] << down)
+        } else if LIMBS > 2 {
+            let most = (Self::BITS - 53).cast_unsigned();
+            if let Some(up) = most.checked_sub(down) {
+                let (limb, wide) = ((up / 64) as usize, u128::from(mantissa) << (up % 64));
+                limbs[limb] = low(wide);
+                if limb + 1 < LIMBS {
+                    limbs[limb + 1] = high(wide);
+                }
+                0
+            } else {
+                let down = (down - most).min(63);
+                limbs[0] = mantissa >> down;
+                mantissa ^ (limbs[0] << down)
+            }
         } else {
             let (top, down) = (u128::from(mantissa) << 72, down.min(127));
             let magnitude = top >> down;
@@ -522,7 +535,7 @@ mod tests {
         let mut rng = Random::new(42);
         let (mut inside, mut outside) = (0, 0);
         for _ in 0..cases(1_000_000) {
-            let spread = rng.integer(1..140);
+            let spread = rng.integer(1..200);
             let scale = rng.integer(-1074..900);
             let xs: [f64; 3] = core::array::from_fn(|_| rng.with_exponent(scale..scale + spread));
             let largest = xs.iter().fold(0.0f64, |most, x| most.max(x.abs()));
@@ -537,6 +550,8 @@ mod tests {
             check(one.map(Window::exponent), 61, &mut count);
             let two = Window::<2>::around(&xs);
             check(two.map(Window::exponent), 125, &mut count);
+            let three = Window::<3>::around(&xs);
+            check(three.map(Window::exponent), 189, &mut count);
             for x in xs {
                 if let Some(window) = one {
                     assert_eq!(value(&window.fixed(x), window.exponent()), exact(x));
@@ -544,8 +559,11 @@ mod tests {
                 if let Some(window) = two {
                     assert_eq!(value(&window.fixed(x), window.exponent()), exact(x));
                 }
+                if let Some(window) = three {
+                    assert_eq!(value(&window.fixed(x), window.exponent()), exact(x));
+                }
             }
-            assert!(two.is_some() || one.is_none());
+            assert!((two.is_some() || one.is_none()) && (three.is_some() || two.is_none()));
         }
         assert!(inside > 1_000 && outside > 1_000, "{inside} {outside}");
         assert_eq!(Window::<1>::around(&[1.0, f64::NAN]), None);
