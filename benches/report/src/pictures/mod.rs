@@ -76,7 +76,8 @@ pub(super) fn pictures(effort: Effort) -> Vec<Pictured> {
     }
     let small = Effort { rows: (effort.rows / 6).max(LEAST_ROWS), ..effort };
     for Made { name, scene, shown, .. } in scenes::certified() {
-        pictured.push(measure(&name, Group::Certified, shown, scene, small));
+        let effort = if shown { effort } else { small };
+        pictured.push(measure(&name, Group::Certified, shown, scene, effort));
     }
     pictured
 }
