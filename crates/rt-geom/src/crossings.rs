@@ -109,14 +109,6 @@ pub(crate) struct Crossings<'a> {
 impl Query for Crossings<'_> {
     type Answer = ();
 
-    fn limit(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    fn is_settled(&self) -> bool {
-        false
-    }
-
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
         leaf.each_crossing(ray.ray, |pass| {
             self.found.extend(leaves.indices(place).map(|index| Crossing::new(index, pass)));

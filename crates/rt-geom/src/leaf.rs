@@ -193,10 +193,16 @@ pub(crate) trait Query {
     type Answer: Default;
 
     /// No hit beyond this changes the answer.
-    fn limit(&self) -> f64;
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        f64::INFINITY
+    }
 
     /// Whether no hit at all changes the answer any more.
-    fn is_settled(&self) -> bool;
+    #[inline(always)]
+    fn is_settled(&self) -> bool {
+        false
+    }
 
     /// Meets the primitive at `place`.
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay);
@@ -210,11 +216,6 @@ pub(crate) struct Any(bool);
 
 impl Query for Any {
     type Answer = bool;
-
-    #[inline(always)]
-    fn limit(&self) -> f64 {
-        f64::INFINITY
-    }
 
     #[inline(always)]
     fn is_settled(&self) -> bool {
@@ -254,11 +255,6 @@ impl Query for Closest {
     #[inline(always)]
     fn limit(&self) -> f64 {
         self.bounds.high
-    }
-
-    #[inline(always)]
-    fn is_settled(&self) -> bool {
-        false
     }
 
     #[inline(always)]

@@ -45,14 +45,6 @@ struct Hits<'a> {
 impl Query for Hits<'_> {
     type Answer = ();
 
-    fn limit(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    fn is_settled(&self) -> bool {
-        false
-    }
-
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
         leaf.each_hit(ray, |t| self.found.extend(leaves.indices(place).map(|index| Hit { index, t })));
     }
@@ -91,10 +83,6 @@ impl Around {
 
 impl Query for Around {
     type Answer = Option<Side>;
-
-    fn limit(&self) -> f64 {
-        f64::INFINITY
-    }
 
     fn is_settled(&self) -> bool {
         self.on
