@@ -32,7 +32,10 @@ impl SplitMix {
 }
 
 /// Names accepted by [`spheres`].
-pub const SCENES: [&str; 4] = ["uniform", "flake", "packed", "mixed"];
+pub const SCENES: [&str; 10] =
+    ["uniform", "flake", "packed", "mixed", "line", "lattice", "heights", "walls", "stars", "decades"];
+/// Names accepted by [`mesh`].
+pub const MESHES: [&str; 4] = ["globe", "terrain", "soup", "city"];
 
 /// All scenes lie in a cube of about side 2 around (0, 0, -3), so the camera
 /// (at the origin, looking down -z, view plane z = -1) sees each of them whole.
@@ -41,6 +44,12 @@ pub const SCENES: [&str; 4] = ["uniform", "flake", "packed", "mixed"];
 /// - `flake`: Haines' sphereflake, nine children per sphere at a third of the radius.
 /// - `packed`: a face-centred lattice with overlapping neighbours, jittered: a molecule's space-filling model.
 /// - `mixed`: centres uniform, radii log-uniform over three decades.
+/// - `line`: touching spheres along x.
+/// - `lattice`: a cubic lattice, every sphere a third of its cell, without jitter.
+/// - `heights`: a square of touching spheres, as high as hills.
+/// - `walls`: `uniform` in a room of five spheres of radius 1e5.
+/// - `stars`: in the camera's view, distances log-uniform over six decades, all of the same apparent size.
+/// - `decades`: radii log-uniform over twelve decades; what is larger than a tenth touches the cube from outside.
 pub fn spheres(scene: &str, n: usize) -> Vec<Sphere> {
     let mut rng = SplitMix(0x5EED ^ n as u64);
     match scene {
@@ -84,6 +93,43 @@ pub fn spheres(scene: &str, n: usize) -> Vec<Sphere> {
             .map(|_| {
                 let r = 0.2 * (n as f32).cbrt().recip() * 10f32.powf(1.5 * rng.signed());
                 [rng.signed(), rng.signed(), rng.signed() - 3.0, r]
+            })
+            .collect(),
+        "line" => {
+            let r = 1.0 / n as f32;
+            (0..n).map(|i| [(2 * i + 1) as f32 * r - 1.0, 0.0, -3.0, r]).collect()
+        }
+        "lattice" | "heights" => {
+            let flat = scene == "heights";
+            let side = (n as f64).powf(if flat { 0.5 } else { 1.0 / 3.0 }).ceil() as usize;
+            let cell = 2.0 / side as f32;
+            let at = |i: usize| (i as f32 + 0.5) * cell - 1.0;
+            let place = |i: usize| {
+                let (x, y) = (at(i % side), at(i / side % side));
+                if flat { [x, y, 0.2 * (5.0 * x).sin() * (4.0 * y).cos() - 3.0, 0.5 * cell] } else { [x, y, at(i / side / side) - 3.0, cell / 3.0] }
+            };
+            (0..n).map(place).collect()
+        }
+        "walls" => {
+            const FAR: f32 = 1e5;
+            let mut room = spheres("uniform", n.saturating_sub(5));
+            let walls = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]];
+            room.extend(walls.map(|[x, y, z]: [f32; 3]| [x * (FAR + 1.0), y * (FAR + 1.0), z * (FAR + 1.0) - 3.0, FAR]));
+            room
+        }
+        "stars" => (0..n)
+            .map(|_| {
+                let far = 10f32.powf(6.0 * rng.unit());
+                [0.5 * far * rng.signed(), 0.5 * far * rng.signed(), -far, 0.3 * far / (n as f32).sqrt()]
+            })
+            .collect(),
+        "decades" => (0..n)
+            .map(|_| {
+                let r = 10f32.powf(12.0 * rng.unit() - 9.0);
+                let at = [rng.signed(), rng.signed(), rng.signed()];
+                // Out along its own direction, until it touches the ball around the cube.
+                let out = if r > 0.1 { (r + 1.75) / at.iter().map(|v| v * v).sum::<f32>().sqrt() } else { 1.0 };
+                [at[0] * out, at[1] * out, at[2] * out - 3.0, r]
             })
             .collect(),
         other => panic!("no scene {other}"),
@@ -152,17 +198,30 @@ pub fn random_rays(n: usize) -> Vec<Ray> {
     (0..n)
         .map(|_| {
             let origin = [rng.signed(), rng.signed(), rng.signed() - 3.0];
-            let direction = loop {
-                let d = [rng.signed(), rng.signed(), rng.signed()];
-                let l2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                if l2 > 1e-4 && l2 <= 1.0 {
-                    let l = l2.sqrt();
-                    break d.map(|v| v / l);
-                }
-            };
-            Ray { origin, direction }
+            Ray { origin, direction: unit_vector(&mut rng) }
         })
         .collect()
+}
+
+/// From every hit of the camera's rays, in a random direction: the second ray of a path.
+pub fn bounce_rays(hits: &[(Ray, f64)]) -> Vec<Ray> {
+    let mut rng = SplitMix(0xB0);
+    let bounce = |(ray, t): &(Ray, f64)| Ray {
+        origin: std::array::from_fn(|k| (f64::from(ray.origin[k]) + t * f64::from(ray.direction[k])) as f32),
+        direction: unit_vector(&mut rng),
+    };
+    hits.iter().map(bounce).collect()
+}
+
+fn unit_vector(rng: &mut SplitMix) -> [f32; 3] {
+    loop {
+        let d = [rng.signed(), rng.signed(), rng.signed()];
+        let l2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if l2 > 1e-4 && l2 <= 1.0 {
+            let l = l2.sqrt();
+            return d.map(|v| v / l);
+        }
+    }
 }
 
 /// Corners and triangles.
@@ -172,7 +231,33 @@ pub type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 ///
 /// - `globe`: a sphere of radius 1 by rings and sectors, closed.
 /// - `terrain`: a square of hills seen from above, open.
+/// - `soup`: triangles anywhere in the cube, as long as the mean distance.
+/// - `city`: boxes on a square, without their floors.
 pub fn mesh(name: &str, n: usize) -> Mesh {
+    let mut rng = SplitMix(0x50FA);
+    if name == "soup" {
+        let long = 2.0 / (n as f32).cbrt();
+        let mut corners = Vec::with_capacity(3 * n);
+        for _ in 0..n {
+            let at = [rng.signed(), rng.signed(), rng.signed() - 3.0];
+            corners.extend([(); 3].map(|()| at.map(|x| x + 0.5 * long * rng.signed())));
+        }
+        return (corners, (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect());
+    }
+    if name == "city" {
+        let side = (n as f64 / 10.0).sqrt().round().max(1.0) as u32;
+        let cell = 2.0 / side as f32;
+        let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+        for block in 0..side * side {
+            let (x, y) = ((block % side) as f32 * cell - 1.0, (block / side) as f32 * cell - 1.0);
+            let (wide, deep, high) = (cell * (0.4 + 0.5 * rng.unit()), cell * (0.4 + 0.5 * rng.unit()), 0.3 * rng.unit() * rng.unit());
+            let first = corners.len() as u32;
+            corners.extend((0..8).map(|k| [x + wide * (k & 1) as f32, y + deep * (k >> 1 & 1) as f32, high * (k >> 2) as f32 - 3.0]));
+            let sides = [[4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
+            triangles.extend(sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(|k: u32| first + k)));
+        }
+        return (corners, triangles);
+    }
     let across = (n as f64 / 2.0).sqrt().round() as u32;
     let at = |i: u32, j: u32| {
         let (u, v) = (f64::from(i) / f64::from(across), f64::from(j) / f64::from(across));

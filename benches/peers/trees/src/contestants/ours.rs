@@ -5,6 +5,7 @@
 use glam::DVec3;
 use rt_geom as geom;
 
+use crate::workload::Mesh;
 use crate::{Contestant, Hit, Ray, Sphere, Tracer};
 
 const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
@@ -19,7 +20,7 @@ fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
-fn widen(ray: &Ray) -> geom::Ray {
+pub fn widen(ray: &Ray) -> geom::Ray {
     geom::Ray::new(vector(ray.origin), vector(ray.direction)).expect("rays of the workload are valid")
 }
 
@@ -64,13 +65,18 @@ impl Tracer for Ours {
     }
 }
 
-/// A mesh, one ray at a time or in batches.
-pub fn mesh(corners: &[[f32; 3]], triangles: &[[u32; 3]], batch: bool, simd: Option<&str>) -> Box<dyn Tracer> {
+/// The triangles of a mesh in f64.
+pub fn triangles((corners, triangles): &Mesh) -> Vec<geom::Triangle> {
     let triangle = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|i| vector(corners[i as usize]));
         geom::Triangle::new(a, b, c).expect("finite corners")
     };
-    let tree = geom::Bvh::new(Vec::new(), triangles.iter().map(triangle).collect());
+    triangles.iter().map(triangle).collect()
+}
+
+/// A mesh, one ray at a time or in batches.
+pub fn mesh(mesh: &Mesh, batch: bool, simd: Option<&str>) -> Box<dyn Tracer> {
+    let tree = geom::Bvh::new(Vec::new(), triangles(mesh));
     let tree = match simd {
         Some(name) => tree.with_simd(name).expect("this CPU has the instruction set"),
         None => tree,
