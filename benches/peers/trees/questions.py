@@ -23,7 +23,7 @@ def least(ask):
 
 
 def main(folder):
-    print("mesh\ttriangles\tquestion\tcontestant\tM/s\tours/theirs\tsum\tdiffering")
+    print("mesh\ttriangles\tquestion\tcontestant\tM/s\tours/theirs\tbatch/theirs\tsum\tdiffering")
     for file in sorted(folder.glob("*.corners"), key=lambda file: int(file.stem)):
         def read(name, kind, width):
             return numpy.fromfile(file.with_suffix("." + name), dtype=kind).reshape(-1, width)
@@ -38,13 +38,14 @@ def main(folder):
         counted = numpy.bincount(ray, minlength=len(rays))
         inside, contains = least(lambda: caster.contains_points(points))
         for question, answers, seconds, ours_seconds in [
-            ("all hits", counted, hits, ours[0]),
-            ("contains", inside, contains, ours[1]),
+            ("all hits", counted, hits, ours[:2]),
+            ("contains", inside, contains, ours[2:]),
         ]:
             exact = read("hits" if question == "all hits" else "inside", "<u4", 1)[:, 0]
             rate, differing = len(answers) / seconds / 1e6, int((answers != exact).sum())
             name = f"trimesh {trimesh.__version__}"
-            print(f"globe\t{file.stem}\t{question}\t{name}\t{rate:.3f}\t{seconds / ours_seconds:.2f}\t{answers.sum()}\t{differing}")
+            ratios = "\t".join(f"{seconds / ours:.2f}" for ours in ours_seconds)
+            print(f"globe\t{file.stem}\t{question}\t{name}\t{rate:.3f}\t{ratios}\t{answers.sum()}\t{differing}")
 
 
 main(pathlib.Path(sys.argv[1]))

@@ -102,12 +102,17 @@ fn tangent_series(sphere: &Sphere, ray: &Ray) -> Ordering {
 }
 
 /// A crossing of a place, as the walk finds it.
-pub(crate) struct Crossings<'a> {
-    pub(crate) found: &'a mut Vec<Crossing>,
+pub(crate) struct Crossings {
+    found: Vec<Crossing>,
 }
 
-impl Query for Crossings<'_> {
-    type Answer = ();
+impl Query for Crossings {
+    type Answer = Vec<Crossing>;
+
+    fn begin(place: &mut Vec<Crossing>) -> Self {
+        place.clear();
+        Self { found: std::mem::take(place) }
+    }
 
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
         leaf.each_crossing(ray.ray, |pass| {
@@ -115,7 +120,10 @@ impl Query for Crossings<'_> {
         });
     }
 
-    fn answer(&self, _: &Leaves, _: &PreparedRay) {}
+    fn answer(&mut self, leaves: &Leaves, ray: &PreparedRay) -> Vec<Crossing> {
+        sort(&mut self.found, ray.ray, |index| leaves.shape(index));
+        std::mem::take(&mut self.found)
+    }
 }
 
 /// Brings crossings of a ray into the order of the turned ray.

@@ -192,6 +192,9 @@ impl Leaves {
 pub(crate) trait Query {
     type Answer: Default;
 
+    /// The query at its beginning; it may use what the place for the answer holds.
+    fn begin(place: &mut Self::Answer) -> Self;
+
     /// No hit beyond this changes the answer.
     #[inline(always)]
     fn limit(&self) -> f64 {
@@ -207,7 +210,7 @@ pub(crate) trait Query {
     /// Meets the primitive at `place`.
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay);
 
-    fn answer(&self, leaves: &Leaves, ray: &PreparedRay) -> Self::Answer;
+    fn answer(&mut self, leaves: &Leaves, ray: &PreparedRay) -> Self::Answer;
 }
 
 /// Is anything hit?
@@ -216,6 +219,11 @@ pub(crate) struct Any(bool);
 
 impl Query for Any {
     type Answer = bool;
+
+    #[inline(always)]
+    fn begin(_: &mut bool) -> Self {
+        Self::default()
+    }
 
     #[inline(always)]
     fn is_settled(&self) -> bool {
@@ -228,7 +236,7 @@ impl Query for Any {
     }
 
     #[inline(always)]
-    fn answer(&self, _: &Leaves, _: &PreparedRay) -> bool {
+    fn answer(&mut self, _: &Leaves, _: &PreparedRay) -> bool {
         self.0
     }
 }
@@ -253,6 +261,11 @@ impl Query for Closest {
     type Answer = Option<Hit>;
 
     #[inline(always)]
+    fn begin(_: &mut Option<Hit>) -> Self {
+        Self::default()
+    }
+
+    #[inline(always)]
     fn limit(&self) -> f64 {
         self.bounds.high
     }
@@ -269,7 +282,7 @@ impl Query for Closest {
     }
 
     #[inline(always)]
-    fn answer(&self, leaves: &Leaves, ray: &PreparedRay) -> Option<Hit> {
+    fn answer(&mut self, leaves: &Leaves, ray: &PreparedRay) -> Option<Hit> {
         let index = *leaves.index.get(self.place)? as usize;
         Some(Hit { index, t: leaves.rounded(self.bounds, self.place, ray) })
     }

@@ -19,6 +19,9 @@ pub const AHEAD: Range<f64> = 0.0..f64::INFINITY;
 /// The direction in which [`Bvh::contains`] counts: any will do; this one is rarely along a face.
 const DIRECTION: DVec3 = DVec3::new(0.539_503_1, 0.614_770_9, 0.575_331_3);
 
+/// Questions that a thread takes at once.
+const BATCH: usize = 1024;
+
 /// Spheres and triangles in the order in which they are listed: every question asks them all.
 #[derive(Clone, Debug, Default)]
 pub struct List {
@@ -38,18 +41,26 @@ pub struct OpenEdge {
 }
 
 /// Gathers every hit.
-struct Hits<'a> {
-    found: &'a mut Vec<Hit>,
+struct Hits {
+    found: Vec<Hit>,
 }
 
-impl Query for Hits<'_> {
-    type Answer = ();
+impl Query for Hits {
+    type Answer = Vec<Hit>;
+
+    fn begin(place: &mut Vec<Hit>) -> Self {
+        place.clear();
+        Self { found: std::mem::take(place) }
+    }
 
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
         leaf.each_hit(ray, |t| self.found.extend(leaves.indices(place).map(|index| Hit { index, t })));
     }
 
-    fn answer(&self, _: &Leaves, _: &PreparedRay) {}
+    fn answer(&mut self, _: &Leaves, _: &PreparedRay) -> Vec<Hit> {
+        sort_hits(&mut self.found);
+        std::mem::take(&mut self.found)
+    }
 }
 
 /// Counts what surrounds the ray's origin.
@@ -84,6 +95,10 @@ impl Around {
 impl Query for Around {
     type Answer = Option<Side>;
 
+    fn begin(_: &mut Option<Side>) -> Self {
+        Self::default()
+    }
+
     fn is_settled(&self) -> bool {
         self.on
     }
@@ -95,7 +110,7 @@ impl Query for Around {
         }
     }
 
-    fn answer(&self, _: &Leaves, _: &PreparedRay) -> Option<Side> {
+    fn answer(&mut self, _: &Leaves, _: &PreparedRay) -> Option<Side> {
         Some(self.side())
     }
 }
@@ -127,9 +142,7 @@ impl Bvh {
     /// assert_eq!(hits.iter().map(|hit| (hit.index, hit.t)).collect::<Vec<_>>(), [(0, 2.0), (0, 4.0), (1, 5.0), (1, 7.0)]);
     /// ```
     pub fn hits(&self, ray: &Ray, within: Range<f64>, hits: &mut Vec<Hit>) {
-        hits.clear();
-        self.query(ray, within, Hits { found: hits }, &mut Visits::default());
-        sort_hits(hits);
+        *hits = self.query(ray, within, Hits::begin(hits), &mut Visits::default());
     }
 
     /// [`hits`](Self::hits) of each ray, in parallel on rayon's current pool.
@@ -138,7 +151,8 @@ impl Bvh {
     /// If the slices differ in length.
     pub fn hits_batch(&self, rays: &[Ray], within: Range<f64>, hits: &mut [Vec<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one list for the hits of each ray");
-        rays.par_iter().zip(hits).for_each(|(ray, hits)| self.hits(ray, within.clone(), hits));
+        let parts = rays.par_chunks(BATCH).zip(hits.par_chunks_mut(BATCH));
+        parts.for_each(|(rays, hits)| self.batch::<Hits>(rays, &within, hits));
     }
 
     /// Writes where the turned ray of [`Triangle::crosses`] crosses surfaces, in its exact order.
@@ -161,9 +175,7 @@ impl Bvh {
     /// assert_eq!(crossings.iter().map(|crossing| crossing.entering).collect::<Vec<_>>(), [true, false]);
     /// ```
     pub fn crossings(&self, ray: &Ray, crossings: &mut Vec<Crossing>) {
-        crossings.clear();
-        self.query(ray, AHEAD, Crossings { found: crossings }, &mut Visits::default());
-        crossings::sort(crossings, ray, |index| self.shape(index));
+        *crossings = self.query(ray, AHEAD, Crossings::begin(crossings), &mut Visits::default());
     }
 
     /// [`crossings`](Self::crossings) of each ray, in parallel on rayon's current pool.
@@ -172,7 +184,8 @@ impl Bvh {
     /// If the slices differ in length.
     pub fn crossings_batch(&self, rays: &[Ray], crossings: &mut [Vec<Crossing>]) {
         assert_eq!(rays.len(), crossings.len(), "one list for the crossings of each ray");
-        rays.par_iter().zip(crossings).for_each(|(ray, crossings)| self.crossings(ray, crossings));
+        let parts = rays.par_chunks(BATCH).zip(crossings.par_chunks_mut(BATCH));
+        parts.for_each(|(rays, crossings)| self.batch::<Crossings>(rays, &AHEAD, crossings));
     }
 
     /// Returns whether a point is inside, exactly: all triangles are one surface, and each sphere is its own.
@@ -207,7 +220,15 @@ impl Bvh {
     /// If the slices differ in length.
     pub fn contains_batch(&self, points: &[DVec3], sides: &mut [Side]) {
         assert_eq!(points.len(), sides.len(), "one place for the answer to each point");
-        points.par_iter().zip(sides).with_min_len(64).for_each(|(&point, side)| *side = self.contains(point));
+        let nowhere = counting_ray(DVec3::ZERO).expect("zero is finite");
+        points.par_chunks(BATCH).zip(sides.par_chunks_mut(BATCH)).for_each(|(points, sides)| {
+            let rays: Vec<Ray> = points.iter().map(|&point| counting_ray(point).unwrap_or(nowhere)).collect();
+            let mut answers = vec![None; rays.len()];
+            self.batch::<Around>(&rays, &AHEAD, &mut answers);
+            for ((side, answer), point) in sides.iter_mut().zip(answers).zip(points) {
+                *side = answer.filter(|_| point.is_finite()).unwrap_or(Side::Outside);
+            }
+        });
     }
 
     /// The edges in which the triangles are not closed, as [`open_edges`].

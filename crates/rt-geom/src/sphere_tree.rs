@@ -379,7 +379,7 @@ fn walk_any<const FMA: bool>(tree: &SphereTree, ray: &Ray, start: f64, end: f64)
 }
 
 #[inline(always)]
-fn walk<const FMA: bool, Q: Query + Default>(tree: &SphereTree, ray: &Ray, within: Range<f64>) -> (Q::Answer, Visits) {
+fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f64>) -> (Q::Answer, Visits) {
     let mut visits = Visits::default();
     if !is_open(&within) || tree.is_empty() {
         return (Q::Answer::default(), visits);
@@ -387,7 +387,7 @@ fn walk<const FMA: bool, Q: Query + Default>(tree: &SphereTree, ray: &Ray, withi
     let leaves = &tree.leaves;
     let ray = &PreparedRay::new(ray, within);
     let mut segment = Segment::new(ray, tree.scale);
-    let mut query = Q::default();
+    let mut query = Q::begin(&mut Q::Answer::default());
     let mut stack = [(0.0, Child { first: 0, count: 0 }); DEPTH];
     let mut height = 0;
     let mut at = tree.root;

@@ -15,7 +15,7 @@ use super::cull::{CullRay, box_keys};
 use super::node::{Block, Blocked, Child, Kind, WIDTH};
 use super::walk::{Areas, meet};
 use crate::leaf::Query;
-use crate::ray::PreparedRay;
+use crate::ray::{PreparedRay, is_open};
 use crate::simd::prefetch_lines;
 use crate::{Ray, Sphere, Triangle};
 
@@ -44,12 +44,12 @@ struct Stacks {
     nodes: Vec<u32>,
 }
 
-impl<'a, Q: Query + Default> Slot<'a, Q> {
+impl<'a, Q: Query> Slot<'a, Q> {
     fn new(ray: &'a Ray, within: &Range<f64>, base: usize) -> Self {
         Self {
             line: CullRay::EVERYTHING,
             ray: PreparedRay::new(ray, within.clone()),
-            query: Q::default(),
+            query: Q::begin(&mut Q::Answer::default()),
             at: Child::from_bits(0),
             height: 0,
             target: 0,
@@ -96,15 +96,18 @@ struct Survivors {
 
 /// Answers a query for all rays.
 #[inline(always)]
-pub(super) fn fly<S: Simd, Q: Query + Default>(
+pub(super) fn fly<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
     rays: &[Ray],
     within: &Range<f64>,
     answers: &mut [Q::Answer],
 ) {
-    let Some(root) = tree.root else {
-        answers.fill_with(Q::Answer::default);
+    let root = tree.root.filter(|_| is_open(within));
+    let Some(root) = root else {
+        for (ray, answer) in rays.iter().zip(answers) {
+            *answer = Q::begin(answer).answer(&tree.leaves, &PreparedRay::new(ray, within.clone()));
+        }
         return;
     };
     let areas = Areas::of(tree);
@@ -183,7 +186,7 @@ pub(super) fn fly<S: Simd, Q: Query + Default>(
 
 /// Puts the next ray that may meet anything into the slot; `false` if none is left.
 #[inline(always)]
-fn launch<'a, S: Simd, Q: Query + Default>(
+fn launch<'a, S: Simd, Q: Query>(
     simd: S,
     slot: &mut Slot<'a, Q>,
     root: Child,
@@ -194,14 +197,14 @@ fn launch<'a, S: Simd, Q: Query + Default>(
 ) -> bool {
     for (target, ray) in waiting {
         slot.ray = PreparedRay::new(ray, within.clone());
+        slot.query = Q::begin(&mut answers[target]);
         if slot.line.set(simd, &tree.frame, &slot.ray) {
-            slot.query = Q::default();
             slot.at = root;
             slot.height = 0;
             slot.target = target;
             return true;
         }
-        answers[target] = Q::Answer::default();
+        answers[target] = slot.query.answer(&tree.leaves, &slot.ray);
     }
     false
 }
@@ -248,7 +251,7 @@ impl Survivors {
 
     /// Hands all to the queries of their slots. A slot's survivors follow each other.
     #[inline(always)]
-    fn meet<S: Simd, Q: Query + Default, L: Blocked>(&mut self, simd: S, tree: &Bvh, slots: &mut [Slot<Q>]) {
+    fn meet<S: Simd, Q: Query, L: Blocked>(&mut self, simd: S, tree: &Bvh, slots: &mut [Slot<Q>]) {
         let len = std::mem::take(&mut self.len);
         for i in 0..len {
             let (place, at) = (self.places[i] as usize, self.slots[i] as usize);

@@ -15,7 +15,6 @@ use std::ops::Range;
 use fearless_simd::Level;
 
 use crate::leaf::{Any, Closest, Leaves, Query};
-use crate::ray::is_open;
 use crate::simd::dispatch;
 use crate::{Hit, Ray, Shape, Sphere, Triangle, Visits, enclosing_sphere};
 use batch::fly;
@@ -145,19 +144,12 @@ impl Bvh {
 
     #[inline(never)]
     pub(crate) fn query<Q: Query>(&self, ray: &Ray, within: Range<f64>, query: Q, visits: &mut Visits) -> Q::Answer {
-        if !is_open(&within) {
-            return Q::Answer::default();
-        }
         dispatch!(self.level, simd => cast::<_, Q>(simd, self, ray, within.clone(), query, visits))
     }
 
     #[inline(never)]
-    fn batch<Q: Query + Default>(&self, rays: &[Ray], within: &Range<f64>, answers: &mut [Q::Answer]) {
+    pub(crate) fn batch<Q: Query>(&self, rays: &[Ray], within: &Range<f64>, answers: &mut [Q::Answer]) {
         assert_eq!(rays.len(), answers.len(), "one place for the answer to each ray");
-        if !is_open(within) {
-            answers.fill_with(Q::Answer::default);
-            return;
-        }
         dispatch!(self.level, simd => fly::<_, Q>(simd, self, rays, within, answers));
     }
 }

@@ -12,7 +12,7 @@ use super::Bvh;
 use super::cull::{CullRay, meet_boxes};
 use super::node::{Block, Blocked, Child, Kind, WIDTH};
 use crate::leaf::{Leaves, Query};
-use crate::ray::PreparedRay;
+use crate::ray::{PreparedRay, is_open};
 use crate::simd::{has_fma, prefetch_lines};
 use crate::{Ray, Visits};
 
@@ -60,10 +60,11 @@ pub(super) fn cast<S: Simd, Q: Query>(
     mut query: Q,
     visits: &mut Visits,
 ) -> Q::Answer {
+    let is_open = is_open(&within);
     let prepared = PreparedRay::new(ray, within);
     let mut line = CullRay::EVERYTHING;
-    if !line.set(simd, &tree.frame, &prepared) {
-        return Q::Answer::default();
+    if !is_open || !line.set(simd, &tree.frame, &prepared) {
+        return query.answer(&tree.leaves, &prepared);
     }
     let (mut small, mut usual, mut large);
     let stack = if tree.stack <= SMALL_STACK {

@@ -7,6 +7,7 @@
 use std::fs;
 use std::path::Path;
 
+use glam::DVec3;
 use rt_geom::{AHEAD, Bvh, Side};
 use trees::contestants::{describe_embree, embree, ours};
 use trees::workload::{self, SplitMix};
@@ -24,8 +25,9 @@ fn main() -> std::io::Result<()> {
     if sizes.is_empty() {
         sizes = vec![82_000, 1_000_000];
     }
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     println!("# {}", describe_embree());
-    println!("mesh\ttriangles\tquestion\tcontestant\tM/s\tours/theirs\tsum\tdiffering");
+    println!("mesh\ttriangles\tquestion\tcontestant\tM/s\tours/theirs\tbatch/theirs\tsum\tdiffering");
     for size in sizes {
         let mesh = workload::mesh("globe", size);
         let n = mesh.1.len();
@@ -44,20 +46,34 @@ fn main() -> std::io::Result<()> {
         };
         let inside = |point: &[f32; 3]| u32::from(tree.contains(point.map(f64::from)) != Side::Outside);
         let along = |&origin: &[f32; 3]| workload::Ray { origin, direction: [0.439_506_44, 0.617_598_6, 0.652_231_57] };
-        let [mut a, mut b, mut c, mut d] = [(); 4].map(|()| (f64::INFINITY, Vec::new()));
+        let [mut a, mut b, mut c, mut d, mut e, mut f] = [(); 6].map(|()| (f64::INFINITY, Vec::new()));
+        let mut lists = vec![Vec::new(); rays.len()];
+        let mut sides = vec![Side::Outside; points.len()];
         for _ in 0..5 {
             time(&mut a, || rays.iter().map(|ray| count(ray, &mut hits)).collect());
             time(&mut b, || rays.iter().map(|ray| embree(ray)).collect());
             time(&mut c, || points.iter().map(inside).collect());
+            time(&mut e, || {
+                one.install(|| tree.hits_batch(&rays.iter().map(ours::widen).collect::<Vec<_>>(), AHEAD, &mut lists));
+                lists.iter().map(|hits| hits.len() as u32).collect()
+            });
+            time(&mut f, || {
+                let points: Vec<DVec3> = points.iter().map(|point| point.map(f64::from).into()).collect();
+                one.install(|| tree.contains_batch(&points, &mut sides));
+                sides.iter().map(|&side| u32::from(side != Side::Outside)).collect()
+            });
             time(&mut d, || points.iter().map(|point| embree(&along(point)) % 2).collect());
         }
-        for (question, [ours, theirs]) in [("all hits", [&a, &b]), ("contains", [&c, &d])] {
+        for (question, [ours, batch, theirs]) in [("all hits", [&a, &e, &b]), ("contains", [&c, &f, &d])] {
             let differing = ours.1.iter().zip(&theirs.1).filter(|(a, b)| a != b).count();
-            for (name, answers, differing) in [("ours", ours, 0), ("Embree 4, repeated rtcIntersect1", theirs, differing)] {
+            assert_eq!(ours.1, batch.1, "the same answers in batches");
+            let rows = [("ours", ours, 0), ("ours, batch", batch, 0), ("Embree 4, repeated rtcIntersect1", theirs, differing)];
+            for (name, answers, differing) in rows {
                 println!(
-                    "globe\t{n}\t{question}\t{name}\t{:.3}\t{:.2}\t{}\t{differing}",
+                    "globe\t{n}\t{question}\t{name}\t{:.3}\t{:.2}\t{:.2}\t{}\t{differing}",
                     answers.1.len() as f64 / answers.0 / 1e6,
                     answers.0 / ours.0,
+                    answers.0 / batch.0,
                     answers.1.iter().sum::<u32>(),
                 );
             }
@@ -70,7 +86,7 @@ fn main() -> std::io::Result<()> {
         fs::write(file("points"), bytes(points.iter().map(|p| p.map(f32::to_le_bytes))))?;
         fs::write(file("hits"), bytes(a.1.iter().map(|n| [n.to_le_bytes()])))?;
         fs::write(file("inside"), bytes(c.1.iter().map(|n| [n.to_le_bytes()])))?;
-        fs::write(file("seconds"), format!("{} {}\n", a.0, c.0))?;
+        fs::write(file("seconds"), format!("{} {} {} {}\n", a.0, e.0, c.0, f.0))?;
     }
     Ok(())
 }
