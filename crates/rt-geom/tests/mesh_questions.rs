@@ -2,9 +2,11 @@
 //! plain list.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use oracle::{Random, cases, dot, sign, sub, vector};
+use rayon::prelude::*;
 use rt_geom::{AHEAD, Bvh, Crossing, Hit, List, Ray, Side, Sphere, Triangle, open_edges};
 
 /// How many rays or points the long run has.
@@ -137,61 +139,116 @@ fn a_tangent_is_turned_into_the_sphere_or_past_it() {
     assert_eq!(crossings(DVec3::NEG_X, DVec3::NEG_X), []);
 }
 
-/// Checks that what a ray crosses is properly nested: a stack of surfaces, of which each is left as the last one entered.
-fn check_nested(crossings: &[Crossing], surface: impl Fn(usize) -> usize, around: &[usize], ray: &Ray) {
-    let mut inside: Vec<usize> = around.to_vec();
-    for &Crossing { index, t, entering } in crossings {
-        let surface = surface(index);
-        if entering {
-            assert!(!inside.contains(&surface), "{surface} is entered twice, at {t:e} of {ray:?}: {crossings:?}");
-            inside.push(surface);
-        } else {
-            assert_eq!(inside.pop(), Some(surface), "at {t:e} of {ray:?}: {crossings:?}");
+/// Surfaces around the origin, each within the next.
+struct Nested {
+    tree: Bvh,
+    triangles: Vec<Triangle>,
+    /// Of each surface, by its number from the inside, the radius.
+    radii: Vec<f64>,
+    /// Of each index, the surface.
+    surface: Vec<usize>,
+}
+
+impl Nested {
+    /// Of each radius a sphere, or a mesh cut so often.
+    fn new(surfaces: &[(f64, Option<u32>)]) -> Self {
+        let (mut spheres, mut triangles, mut surface, mut surface_of_triangles) = (vec![], vec![], vec![], vec![]);
+        for (i, &(radius, cut)) in surfaces.iter().enumerate() {
+            match cut {
+                None => {
+                    spheres.push(Sphere::new(DVec3::ZERO, radius).unwrap());
+                    surface.push(i);
+                }
+                Some(depth) => {
+                    triangles.extend(ball_mesh(depth, radius, DVec3::ZERO));
+                    surface_of_triangles.resize(triangles.len(), i);
+                }
+            }
         }
+        assert!(open_edges(&triangles).is_empty());
+        surface.extend(surface_of_triangles);
+        let radii = surfaces.iter().map(|surface| surface.0).collect();
+        Self { tree: Bvh::new(spheres, triangles.clone()), triangles, radii, surface }
     }
-    assert!(inside.is_empty(), "{ray:?} ends in {inside:?}: {crossings:?}");
+
+    /// A ray to a vertex, an edge or a face, along an edge, or along an axis; from the middle, from `between` two
+    /// surfaces, from outside or from far away. With the radius at which it begins.
+    fn ray(&self, between: f64, i: usize, random: &mut Random) -> Option<(Ray, f64)> {
+        let triangle = |random: &mut Random| &self.triangles[random.below(self.triangles.len())];
+        let aim = place(triangle(random), random);
+        let direction = match i % 4 {
+            0 | 3 => random.point(),
+            1 => {
+                let [a, b, _] = triangle(random).vertices();
+                b - a
+            }
+            _ => [DVec3::X, DVec3::Y, DVec3::Z][random.below(3)],
+        };
+        let (origin, radius) = match i % 5 {
+            0 => (DVec3::ZERO, 0.0),
+            1 => (between * random.direction(), between),
+            2 => (aim - 1e6 * direction, f64::INFINITY),
+            _ => (aim - 8.0 * direction.normalize(), f64::INFINITY),
+        };
+        let towards = if i % 5 < 2 && i % 4 == 0 { aim - origin } else { direction };
+        Some((Ray::new(origin, towards).ok()?, radius))
+    }
+
+    /// Checks a ray that begins at this radius: its crossings are properly nested, a stack of surfaces, of which each
+    /// is left as the last one entered.
+    fn check(&self, crossings: &[Crossing], ray: &Ray, radius: f64) {
+        let around = (0..self.radii.len()).rev().filter(|&surface| self.radii[surface] > radius);
+        let mut inside: Vec<usize> = around.collect();
+        for &Crossing { index, t, entering } in crossings {
+            let surface = self.surface[index];
+            if entering {
+                assert!(!inside.contains(&surface), "{surface} is entered twice, at {t:e} of {ray:?}: {crossings:?}");
+                inside.push(surface);
+            } else {
+                assert_eq!(inside.pop(), Some(surface), "at {t:e} of {ray:?}: {crossings:?}");
+            }
+        }
+        assert!(inside.is_empty(), "{ray:?} ends in {inside:?}: {crossings:?}");
+    }
 }
 
 #[test]
 fn lines_through_nested_surfaces_are_properly_nested() {
     let random = &mut Random::new(3);
-    // A mesh in a mesh in a sphere, all around the origin; the outer two are near each other.
-    let (inner, outer) = (ball_mesh(2, 1.0, DVec3::ZERO), ball_mesh(3, 2.0, DVec3::ZERO));
-    let spheres = vec![Sphere::new(DVec3::ZERO, 2.0 + 1e-9).unwrap()];
-    let triangles: Vec<Triangle> = inner.iter().chain(&outer).copied().collect();
-    assert!(open_edges(&triangles).is_empty());
-    let tree = Bvh::new(spheres, triangles.clone());
-    let surface = |index: usize| match index {
-        0 => 2,
-        i if i <= inner.len() => 0,
-        _ => 1,
-    };
+    // A mesh in a mesh in a sphere; the outer two are near each other.
+    let nested = Nested::new(&[(1.0, Some(2)), (2.0, Some(3)), (2.0 + 1e-9, None)]);
     let mut crossings = Vec::new();
     let mut total = 0;
-    for i in 0..10 * cases(LONG / 10) {
-        let aim = place(&triangles[random.below(triangles.len())], random);
-        let direction = match i % 4 {
-            // To a vertex, an edge or a face; along an edge; along an axis; from far away.
-            0 | 3 => random.point(),
-            1 => {
-                let [a, b, _] = triangles[random.below(triangles.len())].vertices();
-                b - a
-            }
-            _ => [DVec3::X, DVec3::Y, DVec3::Z][random.below(3)],
-        };
-        let (origin, around): (DVec3, &[usize]) = match i % 5 {
-            0 => (DVec3::ZERO, &[2, 1, 0]),
-            1 => (1.5 * random.direction(), &[2, 1]),
-            2 => (aim - 1e6 * direction, &[]),
-            _ => (aim - 8.0 * direction.normalize(), &[]),
-        };
-        let towards = if i % 5 < 2 && i % 4 == 0 { aim - origin } else { direction };
-        let Ok(ray) = Ray::new(origin, towards) else { continue };
-        tree.crossings(&ray, &mut crossings);
-        check_nested(&crossings, surface, around, &ray);
+    for i in 0..100_000 {
+        let Some((ray, radius)) = nested.ray(1.5, i, random) else { continue };
+        nested.tree.crossings(&ray, &mut crossings);
+        nested.check(&crossings, &ray, radius);
         total += crossings.len();
     }
-    assert!(total > 10 * cases(LONG / 10), "{total}");
+    assert!(total > 100_000, "{total}");
+}
+
+/// A thousand crossings; with `RT_LONG` 10^9, in parallel.
+#[test]
+fn no_crossing_of_many_is_lost() {
+    const ROWS: usize = 1000;
+    let shell = |i: i32, cut| (1.05f64.powi(i) * if cut { 1.0 } else { 1.0001 }, cut.then_some(3));
+    let nested = Nested::new(&(0..12).flat_map(|i| [shell(i, true), shell(i, false)]).collect::<Vec<_>>());
+    let wanted = if std::env::var_os("RT_LONG").is_some() { 1_000_000_000 } else { 1000 };
+    let total = AtomicUsize::new(0);
+    // A line crosses 21 surfaces on average.
+    (0..wanted / 20 / ROWS + 1).into_par_iter().for_each(|seed| {
+        let random = &mut Random::new(1000 + seed as u64);
+        let between = 1.025 * 1.05f64.powi(random.integer(0..11));
+        let rays: Vec<(Ray, f64)> = (0..ROWS).filter_map(|i| nested.ray(between, i, random)).collect();
+        let mut crossings = vec![Vec::new(); rays.len()];
+        nested.tree.crossings_batch(&rays.iter().map(|row| row.0).collect::<Vec<_>>(), &mut crossings);
+        for ((ray, radius), crossings) in rays.iter().zip(&crossings) {
+            nested.check(crossings, ray, *radius);
+        }
+        total.fetch_add(crossings.iter().map(Vec::len).sum(), Relaxed);
+    });
+    assert!(total.load(Relaxed) >= wanted, "{total:?} crossings of {wanted}");
 }
 
 #[test]
