@@ -1,7 +1,7 @@
 //! Certified samples: a byte is taken only if every number within the bound of its error rounds to it.
 //!
 //! A pixel that is not certain in doubles climbs: to vectors that are good to a few ulp with exact sides, and then to
-//! enclosures with 128, 256, ... 2,048 bits. What is still open is taken for an exact tie, and counted.
+//! enclosures with 128, 512 and 2,048 bits. What is still open is taken for an exact tie, and counted.
 
 use glam::DVec3;
 use rt_geom::{Hit, Ray};
@@ -21,8 +21,8 @@ pub struct Certified {
     pub doubles: u64,
     /// From vectors in double-double, with exact sides.
     pub double_double: u64,
-    /// By enclosures with 128, 256, 512, 1,024 and 2,048 bits.
-    pub enclosures: [u64; 5],
+    /// By enclosures with 128, 512 and 2,048 bits.
+    pub enclosures: [u64; 3],
     /// Taken for an exact tie, since 2,048 bits left them open.
     pub undecided: u64,
 }
@@ -34,7 +34,7 @@ impl Certified {
         Self {
             doubles: self.doubles + other.doubles,
             double_double: self.double_double + other.double_double,
-            enclosures: [0, 1, 2, 3, 4].map(|i| self.enclosures[i] + other.enclosures[i]),
+            enclosures: [0, 1, 2].map(|i| self.enclosures[i] + other.enclosures[i]),
             undecided: self.undecided + other.undecided,
         }
     }
@@ -103,11 +103,9 @@ impl Certifier<'_> {
         }
         let pixel = Pixel { certifier: self, rays, hits, shaded: &shaded, lights };
         type Stage = fn(&Pixel) -> Option<[u16; 3]>;
-        let stages: [Stage; 5] = [
+        let stages: [Stage; 3] = [
             |pixel| pixel.enclosed::<2>(None),
-            |pixel| pixel.enclosed::<4>(None),
             |pixel| pixel.enclosed::<8>(None),
-            |pixel| pixel.enclosed::<16>(None),
             |pixel| pixel.enclosed::<32>(None),
         ];
         let decided = stages.iter().enumerate().find_map(|(stage, enclosed)| Some((stage, enclosed(&pixel)?)));
