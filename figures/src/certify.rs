@@ -103,11 +103,8 @@ impl Certifier<'_> {
         }
         let pixel = Pixel { certifier: self, rays, hits, shaded: &shaded, lights };
         type Stage = fn(&Pixel) -> Option<[u16; 3]>;
-        let stages: [Stage; 3] = [
-            |pixel| pixel.enclosed::<2>(None),
-            |pixel| pixel.enclosed::<8>(None),
-            |pixel| pixel.enclosed::<32>(None),
-        ];
+        let stages: [Stage; 3] =
+            [|pixel| pixel.enclosed::<2>(None), |pixel| pixel.enclosed::<8>(None), |pixel| pixel.enclosed::<32>(None)];
         let decided = stages.iter().enumerate().find_map(|(stage, enclosed)| Some((stage, enclosed(&pixel)?)));
         match decided {
             Some((stage, samples)) => {

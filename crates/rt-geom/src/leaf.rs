@@ -124,7 +124,7 @@ impl Leaf for Triangle {
 pub(crate) struct Leaves {
     pub(crate) spheres: Vec<Sphere>,
     pub(crate) triangles: Vec<Triangle>,
-    /// The index of the primitive at each place, as the caller listed them.
+    /// The index of the primitive at each place, as the caller listed them; [`NOTHING`](Self::NOTHING) where none is.
     index: Vec<u32>,
     /// The place of the primitive of each index.
     place: Vec<u32>,
@@ -133,10 +133,14 @@ pub(crate) struct Leaves {
 }
 
 impl Leaves {
+    /// The index of a place where no primitive is.
+    pub(crate) const NOTHING: u32 = u32::MAX;
+
     /// The primitives at their places; `index` tells which is where.
     pub(crate) fn new(spheres: Vec<Sphere>, triangles: Vec<Triangle>, index: Vec<u32>) -> Self {
-        let mut place = vec![0; index.len()];
-        for (at, &index) in index.iter().enumerate() {
+        let none = index.iter().filter(|&&index| index == Self::NOTHING).count();
+        let mut place = vec![0; index.len() - none];
+        for (at, &index) in index.iter().enumerate().filter(|&(_, &index)| index != Self::NOTHING) {
             place[index as usize] = u32::try_from(at).expect("fewer than 2^32 primitives");
         }
         Self { spheres, triangles, index, place, twins: Vec::new() }
@@ -158,7 +162,7 @@ impl Leaves {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.index.len()
+        self.place.len()
     }
 
     /// The primitive with this index.

@@ -234,12 +234,8 @@ impl Bvh {
     /// The edges in which the triangles are not closed, as [`open_edges`].
     #[must_use]
     pub fn open_edges(&self) -> Vec<OpenEdge> {
-        let spheres = self.len() - self.triangle_count();
-        let triangles: Vec<Triangle> = (spheres..self.len())
-            .map(|index| match self.shape(index) {
-                Shape::Triangle(triangle) => triangle,
-                Shape::Sphere(_) => unreachable!("spheres come first"),
-            })
+        let triangles: Vec<Triangle> = (0..self.len())
+            .filter_map(|index| if let Shape::Triangle(triangle) = self.shape(index) { Some(triangle) } else { None })
             .collect();
         open_edges(&triangles)
     }

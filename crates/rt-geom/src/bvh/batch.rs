@@ -11,13 +11,14 @@ use std::ops::Range;
 use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::Bvh;
+use super::crown::Tour;
 use super::cull::{CullRay, box_keys};
-use super::node::{Block, Blocked, Child, Kind, WIDTH};
-use super::walk::{Areas, meet};
+use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
+use super::walk::{Areas, meet, next_region};
 use crate::leaf::Query;
 use crate::ray::{PreparedRay, is_open};
 use crate::simd::prefetch_lines;
-use crate::{Ray, Sphere, Triangle};
+use crate::{Ray, Sphere, Triangle, Visits};
 
 /// Rays on their way at once.
 const FLIGHT: usize = 64;
@@ -103,13 +104,12 @@ pub(super) fn fly<S: Simd, Q: Query>(
     within: &Range<f64>,
     answers: &mut [Q::Answer],
 ) {
-    let root = tree.root.filter(|_| is_open(within));
-    let Some(root) = root else {
+    if !is_open(within) {
         for (ray, answer) in rays.iter().zip(answers) {
             *answer = Q::begin(answer).answer(&tree.leaves, &PreparedRay::new(ray, within.clone()));
         }
         return;
-    };
+    }
     let areas = Areas::of(tree);
     let mut waiting = rays.iter().enumerate();
     let mut lists = Lists::NONE;
@@ -119,9 +119,10 @@ pub(super) fn fly<S: Simd, Q: Query>(
     let flight = FLIGHT.min(rays.len());
     let mut slots: Vec<Slot<Q>> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
     let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
+    let mut tours: Vec<Tour> = slots.iter().filter_map(|_| tree.crown.as_ref().map(Tour::new)).collect();
     for (at, slot) in slots.iter_mut().enumerate() {
-        if launch(simd, slot, root, tree, within, &mut waiting, answers) {
-            lists.push(root.kind() as usize, at);
+        if let Some(list) = proceed(simd, slot, false, tours.get_mut(at), tree, within, &mut waiting, answers) {
+            lists.push(list, at);
         }
     }
     let mut flying: usize = lists.len.iter().sum();
@@ -173,40 +174,58 @@ pub(super) fn fly<S: Simd, Q: Query>(
         }
         let (done, len) = lists.take(DONE);
         for &at in &done[..len] {
-            let slot = &mut slots[usize::from(at)];
-            answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
-            if launch(simd, slot, root, tree, within, &mut waiting, answers) {
-                lists.push(root.kind() as usize, usize::from(at));
-            } else {
-                flying -= 1;
+            let at = usize::from(at);
+            let slot = &mut slots[at];
+            match proceed(simd, slot, true, tours.get_mut(at), tree, within, &mut waiting, answers) {
+                Some(list) => lists.push(list, at),
+                None => flying -= 1,
             }
         }
     }
 }
 
-/// Puts the next ray that may meet anything into the slot; `false` if none is left.
+/// Takes the ray of a slot on to the next region that it may meet, if there is a crown; after the last it answers, and
+/// the next ray takes the place. Returns the list for what is there to do; `None` if no ray is left.
 #[inline(always)]
-fn launch<'a, S: Simd, Q: Query>(
+#[expect(clippy::too_many_arguments, reason = "a part of the loop above, inlined into it")]
+fn proceed<'a, S: Simd, Q: Query>(
     simd: S,
     slot: &mut Slot<'a, Q>,
-    root: Child,
+    mut is_taken: bool,
+    mut tour: Option<&mut Tour>,
     tree: &Bvh,
     within: &Range<f64>,
     waiting: &mut impl Iterator<Item = (usize, &'a Ray)>,
     answers: &mut [Q::Answer],
-) -> bool {
-    for (target, ray) in waiting {
-        slot.ray = PreparedRay::new(ray, within.clone());
-        slot.query = Q::begin(&mut answers[target]);
-        if slot.line.set(simd, &tree.frame, &slot.ray) {
-            slot.at = root;
-            slot.height = 0;
-            slot.target = target;
-            return true;
+) -> Option<usize> {
+    let mut only = None;
+    loop {
+        if is_taken {
+            let region = match &mut tour {
+                None => only.take(),
+                Some(tour) => next_region(simd, tour, tree, &slot.ray, &mut slot.query, &mut Visits::default()),
+            };
+            if let Some(&Region { frame, root }) = region {
+                if slot.line.set(simd, &frame, &slot.ray) {
+                    slot.line.shorten(slot.query.limit());
+                    slot.at = root;
+                    slot.height = 0;
+                    return Some(root.kind() as usize);
+                }
+                continue;
+            }
+            answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
         }
-        answers[target] = slot.query.answer(&tree.leaves, &slot.ray);
+        let ray;
+        (slot.target, ray) = waiting.next()?;
+        slot.ray = PreparedRay::new(ray, within.clone());
+        slot.query = Q::begin(&mut answers[slot.target]);
+        is_taken = true;
+        only = tree.regions.first();
+        if let (Some(tour), Some(crown)) = (&mut tour, &tree.crown) {
+            tour.begin(crown, &slot.ray);
+        }
     }
-    false
 }
 
 /// Takes the nearest pending part that is still of interest.

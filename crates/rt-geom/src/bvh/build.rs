@@ -20,25 +20,49 @@ use fearless_simd::{Level, Simd, f32x8, prelude::*, u32x8};
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::node::{Block, Blocked, COORDINATE_ERROR, Child, Frame, Kind, Node, WIDTH};
+use super::crown::Part;
+use super::node::{Block, Blocked, COORDINATE_ERROR, Child, Frame, Kind, Node, Region, WIDTH};
 use super::rank::{self, ascending};
+use crate::leaf::Leaves;
 use crate::simd::dispatch;
+use crate::{Shape, Sphere, Triangle};
 
-/// The tree while it grows: first over the spheres, then over the triangles.
+/// The tree while it grows, region after region.
 #[derive(Default)]
 pub(super) struct Trunk {
     pub(super) nodes: Vec<Node>,
-    /// The index of the primitive at each place.
-    pub(super) index: Vec<u32>,
+    pub(super) regions: Vec<Region>,
+    pub(super) spheres: Rows<Sphere>,
+    pub(super) triangles: Rows<Triangle>,
     /// The primitives that no leaf block bounds, each after the equal one that stands for it.
     pub(super) twins: Vec<(u32, u32)>,
-    parts: Vec<(Collapsed, Branch)>,
+    /// How many pending entries a walk can need.
+    pub(super) stack: usize,
 }
 
-impl Trunk {
-    /// Grows a tree over the primitives, and returns them in leaf order with their leaf blocks.
-    pub(super) fn plant<L: Blocked>(&mut self, leaves: Vec<L>, frame: &Frame) -> (Vec<L>, Vec<L::Block>) {
-        let first = self.index.len();
+/// The primitives of a kind at their places, with their leaf blocks.
+pub(super) struct Rows<L: Blocked> {
+    pub(super) leaves: Vec<L>,
+    pub(super) blocks: Vec<L::Block>,
+    /// The index of the primitive at each place.
+    pub(super) index: Vec<u32>,
+}
+
+impl<L: Blocked> Default for Rows<L> {
+    fn default() -> Self {
+        Self { leaves: Vec::new(), blocks: Vec::new(), index: Vec::new() }
+    }
+}
+
+/// The binary tree over the primitives of one kind in a frame, and these in the order of its leaves.
+pub(super) struct Binary<'a, L> {
+    leaves: &'a [L],
+    pub(super) items: Vec<Item>,
+    branches: Vec<Branch>,
+}
+
+impl<'a, L: Blocked> Binary<'a, L> {
+    pub(super) fn new(leaves: &'a [L], frame: &Frame) -> Self {
         let number = |place: usize| u32::try_from(place).expect("fewer than 2^32 primitives");
         let item = |(place, leaf): (usize, &L)| {
             let (low, high) = leaf.extent(frame);
@@ -46,14 +70,67 @@ impl Trunk {
         };
         let mut items: Vec<Item> = leaves.par_iter().enumerate().map(item).collect();
         let branches = binary_tree(&mut items, &|a, b| leaves[a as usize].order(&leaves[b as usize]));
-        if let Some(&whole) = branches.first() {
-            self.parts.push((collapse(&branches, L::KIND, &mut self.nodes), whole));
+        Self { leaves, items, branches }
+    }
+}
+
+impl Trunk {
+    /// Appends a region. `index` tells the index of a primitive from its number there, spheres first.
+    pub(super) fn grow(
+        &mut self,
+        frame: Frame,
+        (spheres, triangles): (Binary<Sphere>, Binary<Triangle>),
+        index: impl Fn(u32) -> u32,
+    ) -> Part {
+        let first = u32::try_from(spheres.leaves.len()).expect("fewer than 2^32 primitives");
+        let parts = [
+            self.plant(spheres, &frame, |rows| &mut rows.spheres, &index),
+            self.plant(triangles, &frame, |rows| &mut rows.triangles, |i| index(first + i)),
+        ];
+        let (root, stack) = match parts {
+            // An empty scene has no region.
+            [None, None] => return Part::Region(0),
+            [Some((part, _)), None] | [None, Some((part, _))] => (part.child, part.stack),
+            [Some(a), Some(b)] => {
+                let mut join = Node::EMPTY;
+                for (lane, (part, whole)) in [&a, &b].into_iter().enumerate() {
+                    join.children[lane] = part.child;
+                    join.boxes.set(lane, whole.low, whole.high);
+                }
+                self.nodes.push(join);
+                (Child::new(Kind::Inner, self.nodes.len() - 1), a.0.stack.max(b.0.stack) + 2)
+            }
+        };
+        self.stack = self.stack.max(stack);
+        self.regions.push(Region { frame, root });
+        Part::Region(u32::try_from(self.regions.len() - 1).expect("fewer regions than primitives"))
+    }
+
+    /// Appends a primitive that no region holds, and returns its place among those of its kind.
+    pub(super) fn add(&mut self, shape: Shape, index: u32) -> usize {
+        match shape {
+            Shape::Sphere(sphere) => self.spheres.add(sphere, index),
+            Shape::Triangle(triangle) => self.triangles.add(triangle, index),
         }
+    }
+
+    /// Appends the primitives of one kind in leaf order with their leaf blocks, and the tree above them.
+    fn plant<L: Blocked>(
+        &mut self,
+        Binary { leaves, items, branches }: Binary<L>,
+        frame: &Frame,
+        rows: impl Fn(&mut Self) -> &mut Rows<L>,
+        index: impl Fn(u32) -> u32,
+    ) -> Option<(Collapsed, Branch)> {
+        let &whole = branches.first()?;
+        let block = rows(self).start_block();
+        let part = collapse(&branches, (L::KIND, block), &mut self.nodes);
         drop(branches);
-        let first = number(first);
-        self.index.extend(items.iter().map(|item| item.index() + first));
-        self.twins.extend(items.iter().filter_map(|item| Some((item.twin_of()? + first, item.index() + first))));
-        let sorted: Vec<L> = items.par_iter().map(|item| leaves[item.index() as usize]).collect();
+        self.twins.extend(items.iter().filter_map(|item| Some((index(item.twin_of()?), index(item.index())))));
+        let rows = rows(self);
+        let first = rows.leaves.len();
+        rows.index.extend(items.iter().map(|item| index(item.index())));
+        rows.leaves.par_extend(items.par_iter().map(|item| leaves[item.index() as usize]));
         let block = |(leaves, items): (&[L], &[Item])| {
             let mut block = L::Block::EMPTY;
             for (lane, (leaf, _)) in
@@ -63,35 +140,32 @@ impl Trunk {
             }
             block
         };
-        let blocks = sorted.par_chunks(WIDTH).zip(items.par_chunks(WIDTH)).map(block).collect();
-        (sorted, blocks)
+        rows.blocks.par_extend(rows.leaves[first..].par_chunks(WIDTH).zip(items.par_chunks(WIDTH)).map(block));
+        Some((part, whole))
+    }
+}
+
+impl<L: Blocked> Rows<L> {
+    fn add(&mut self, leaf: L, index: u32) -> usize {
+        self.leaves.push(leaf);
+        self.index.push(index);
+        self.leaves.len() - 1
     }
 
-    /// Joins what was planted under one root; returns it, and how many pending entries a walk can need.
-    pub(super) fn join(&mut self) -> (Option<Child>, usize) {
-        let root = match self.parts[..] {
-            [] => (None, 0),
-            [(part, _)] => (Some(part.child), part.stack),
-            _ => {
-                let mut join = Node::EMPTY;
-                for (lane, (part, whole)) in self.parts.iter().enumerate() {
-                    join.children[lane] = part.child;
-                    join.boxes.set(lane, whole.low, whole.high);
-                }
-                self.nodes.push(join);
-                let stack = self.parts.iter().map(|(part, _)| part.stack).max().unwrap_or(0);
-                (Some(Child::new(Kind::Inner, self.nodes.len() - 1)), stack + self.parts.len())
-            }
-        };
-        self.nodes.shrink_to_fit();
-        root
+    /// Fills the last block up with places where nothing is, and returns the number of the next.
+    fn start_block(&mut self) -> usize {
+        if let Some(&last) = self.leaves.last() {
+            self.leaves.resize(self.leaves.len().next_multiple_of(WIDTH), last);
+            self.index.resize(self.leaves.len(), Leaves::NOTHING);
+        }
+        self.blocks.len()
     }
 }
 
 /// A primitive's box. `low.w` carries the primitive's index as bits, `high.w` that of the primitive whose twin it is; no
 /// arithmetic uses that lane's value.
 #[derive(Clone, Copy, Debug)]
-struct Item {
+pub(super) struct Item {
     low: Vec4,
     high: Vec4,
 }
@@ -107,14 +181,30 @@ impl Item {
         }
     }
 
-    fn index(&self) -> u32 {
+    pub(super) fn index(&self) -> u32 {
         self.low.w.to_bits()
     }
 
     /// The lowest index of a primitive in the same part of the tree that is equal to this one, if it is not its own.
-    fn twin_of(&self) -> Option<u32> {
+    pub(super) fn twin_of(&self) -> Option<u32> {
         let first = self.high.w.to_bits();
         (first != Self::NO_TWIN).then_some(first)
+    }
+
+    /// The same with another index.
+    pub(super) fn with_index(mut self, index: u32) -> Self {
+        self.low.w = f32::from_bits(index);
+        self
+    }
+
+    /// The longest side.
+    pub(super) fn size(&self) -> f32 {
+        (self.high - self.low).truncate().max_element()
+    }
+
+    /// How far the centers are apart, along the axis where they are farthest.
+    pub(super) fn distance(&self, other: &Self) -> f32 {
+        0.5 * (self.middle() - other.middle()).truncate().abs().max_element()
     }
 
     /// Twice the center.
@@ -201,12 +291,19 @@ type Order<'a> = &'a (dyn Fn(u32, u32) -> Ordering + Sync);
 
 /// Bounds of the items and of their middles.
 #[derive(Clone, Copy)]
-struct Extent {
+pub(super) struct Extent {
     items: Bounds,
     middles: Bounds,
 }
 
-fn bounds_of(items: &[Item]) -> Extent {
+impl Extent {
+    /// The longest side of the items' bounds.
+    pub(super) fn size(&self) -> f32 {
+        (self.items.high - self.items.low).truncate().max_element()
+    }
+}
+
+pub(super) fn bounds_of(items: &[Item]) -> Extent {
     let mut extent = Extent { items: Bounds::EMPTY, middles: Bounds::EMPTY };
     for item in items {
         extent.items.add(item.low, item.high);
@@ -275,7 +372,7 @@ fn cut(items: &mut [Item], extent: &Extent, depth: u32) -> usize {
         items.select_nth_unstable_by(first, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
         return first;
     }
-    if items.len() <= SORTED { sorted_cut(items, extent, spread) } else { binned_cut(items, extent, spread) }
+    if items.len() <= SORTED { sorted_cut(items, extent, spread) } else { binned_cut(items, extent) }
 }
 
 /// Tries every cut at a multiple of [`WIDTH`] along each axis.
@@ -443,39 +540,63 @@ fn add_to_bins<S: Simd>(
     counts[2][z] += 1;
 }
 
-/// Cuts between two bins, and moves at most eight items across so that the sides are multiples of [`WIDTH`].
-fn binned_cut(items: &mut [Item], extent: &Extent, spread: Vec4) -> usize {
-    let n = items.len();
-    let binning = Binning::new(&extent.middles, spread);
-    let bins = fill_bins(items, binning);
-    // (cost, axis, first bin of the second side, items before it)
-    let mut best = (f32::INFINITY, 0, 0, 0);
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut tails = [0.0; BINS];
-        let (mut tail, mut behind) = (Bounds::EMPTY, 0);
-        for k in (1..BINS).rev() {
-            tail.merge(&bins[k].bounds);
-            behind += bins[k].count;
-            tails[k] = tail.half_area() * count(behind.div_ceil(WIDTH));
-        }
-        let (mut head, mut before) = (Bounds::EMPTY, 0);
-        for k in 1..BINS {
-            head.merge(&bins[k - 1].bounds);
-            before += bins[k - 1].count;
-            let cost = head.half_area() * count(before.div_ceil(WIDTH)) + tails[k];
-            if before > 0 && before < n && cost < best.0 {
-                best = (cost, axis, k, before);
+/// A cut between two bins.
+pub(super) struct BinCut {
+    binning: Binning,
+    axis: usize,
+    /// The first bin of the second side.
+    bin: usize,
+    /// Items before it; 0 if the middles cannot be told apart.
+    before: usize,
+}
+
+impl BinCut {
+    /// The cut of the least cost.
+    pub(super) fn new(items: &[Item], extent: &Extent) -> Self {
+        let n = items.len();
+        let binning = Binning::new(&extent.middles, extent.middles.high - extent.middles.low);
+        let bins = fill_bins(items, binning);
+        let (mut least, mut best) = (f32::INFINITY, Self { binning, axis: 0, bin: 0, before: 0 });
+        for (axis, bins) in bins.iter().enumerate() {
+            let mut tails = [0.0; BINS];
+            let (mut tail, mut behind) = (Bounds::EMPTY, 0);
+            for k in (1..BINS).rev() {
+                tail.merge(&bins[k].bounds);
+                behind += bins[k].count;
+                tails[k] = tail.half_area() * count(behind.div_ceil(WIDTH));
+            }
+            let (mut head, mut before) = (Bounds::EMPTY, 0);
+            for bin in 1..BINS {
+                head.merge(&bins[bin - 1].bounds);
+                before += bins[bin - 1].count;
+                let cost = head.half_area() * count(before.div_ceil(WIDTH)) + tails[bin];
+                if before > 0 && before < n && cost < least {
+                    (least, best) = (cost, Self { binning, axis, bin, before });
+                }
             }
         }
+        best
     }
-    let (_, axis, bin, before) = best;
+
+    /// Puts the items of the first side before the others; `None` if there are no two sides.
+    pub(super) fn part<'a>(&self, items: &'a mut [Item]) -> Option<(&'a mut [Item], &'a mut [Item])> {
+        partition(items, |item| self.binning.bin(item, self.axis) < self.bin);
+        (self.before > 0).then(|| items.split_at_mut(self.before))
+    }
+}
+
+/// Cuts between two bins, and moves at most eight items across so that the sides are multiples of [`WIDTH`].
+fn binned_cut(items: &mut [Item], extent: &Extent) -> usize {
+    let n = items.len();
+    let cut = BinCut::new(items, extent);
+    let BinCut { axis, before, .. } = cut;
     // The nearest multiple that leaves something on both sides.
     let first = ((before + WIDTH / 2) / WIDTH).clamp(1, n.div_ceil(WIDTH) - 1) * WIDTH;
     if before == 0 {
         // All middles coincide (or cannot be told apart): any halves will do.
         return n.div_ceil(WIDTH) / 2 * WIDTH;
     }
-    partition(items, |item| binning.bin(item, axis) < bin);
+    cut.part(items);
     let key = |item: &Item| item.middle()[axis];
     if first < before {
         // The last ones of the first side move over.
@@ -515,13 +636,13 @@ struct Collapsed {
     stack: usize,
 }
 
-/// Turns the binary tree into nodes of up to sixteen children each, with leaf blocks of the given kind, and appends
-/// them, parents first.
+/// Turns the binary tree into nodes of up to sixteen children each, above leaf blocks of the given kind from the given
+/// one on, and appends them, parents first.
 ///
 /// Of all ways to do so it takes the one with the least sum of the nodes' surfaces, which is the number of nodes that
 /// a random ray is expected to visit.
-fn collapse(branches: &[Branch], kind: Kind, nodes: &mut Vec<Node>) -> Collapsed {
-    Collapse { branches, costs: costs(branches), kind, nodes }.part(0, 0)
+fn collapse(branches: &[Branch], (kind, block): (Kind, usize), nodes: &mut Vec<Node>) -> Collapsed {
+    Collapse { branches, costs: costs(branches), kind, nodes }.part(0, block)
 }
 
 /// For each branch and `j` the least cost of what is below it as at most `j + 1` children of one node.
@@ -645,7 +766,7 @@ mod tests {
             let mut binary = Vec::new();
             branches(leaves, random, &mut binary);
             let mut nodes = Vec::new();
-            let root = collapse(&binary, Kind::Spheres, &mut nodes);
+            let root = collapse(&binary, (Kind::Spheres, 0), &mut nodes);
             assert_eq!(root.child.kind(), Kind::Inner);
             // The surface of the root, and of the box of every child that is a node.
             let inner = |node: &Node| {

@@ -1,11 +1,14 @@
 //! The fast tree: sixteen children a node, boxes above blocks of balls, culled in f32 sixteen at a time.
 //!
 //! `build.rs` makes it, `node.rs` says how it lies in memory, `walk.rs` takes one ray through it and `batch.rs` many.
+//! Where sizes are too far apart for one frame, `groups.rs` parts them, and `crown.rs` stands above the parts.
 //! The cull (`cull.rs`) may keep too much and never drops a hit; the exact kernels of the primitives decide.
 
 mod batch;
 mod build;
+mod crown;
 mod cull;
+mod groups;
 mod node;
 mod rank;
 mod walk;
@@ -18,26 +21,27 @@ use crate::leaf::{Any, Closest, Leaves, Query};
 use crate::simd::dispatch;
 use crate::{Hit, Ray, Shape, Sphere, Triangle, Visits, enclosing_sphere};
 use batch::fly;
-use build::Trunk;
-use node::{Balls, Boxes, Child, Frame, Node};
+use crown::Crown;
+use node::{Balls, Boxes, Node, Region};
 use walk::cast;
 
 /// The tree to cast rays with: answers equal the plain loop's, bit for bit.
 ///
 /// A query usually takes time in the order of the logarithm of the number of primitives. It takes time in proportion to
 /// their number where bounds cannot part them: where many distinct primitives share a point that the ray passes, as a
-/// fan of triangles does or spheres with one center, or lie closer together than the rounding of the bounds, which is
-/// about 2^-21 of the scene's radius. Equal primitives cost no more than one of them: the lowest index answers.
-/// So do rays that start beyond 2^42 radii from the scene, or whose direction is so long or so short that one
-/// unit of `t` in radii of the scene is not a normal double: they meet every primitive.
+/// fan of triangles does or spheres with one center. Equal primitives cost no more than one of them: the lowest index
+/// answers. However different sizes and distances are, each part of the scene is bounded as finely as if it were alone.
+/// A ray that starts beyond 2^42 radii from such a part, or whose direction is so long or so short that one unit of `t`
+/// in radii of it is not a normal double, meets all of it once it meets its box.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     leaves: Leaves,
     nodes: Vec<Node>,
     sphere_blocks: Vec<Balls>,
     triangle_blocks: Vec<Boxes>,
-    root: Option<Child>,
-    frame: Frame,
+    /// One, or any number below a crown; none in an empty tree.
+    regions: Vec<Region>,
+    crown: Option<Crown>,
     /// How many pending entries a walk can need.
     stack: usize,
     level: Level,
@@ -52,14 +56,19 @@ impl Bvh {
     pub fn new(spheres: Vec<Sphere>, triangles: Vec<Triangle>) -> Self {
         let count = spheres.len() + triangles.len();
         assert!(u32::try_from(count).is_ok(), "a tree holds fewer than 2^32 primitives, not {count}");
-        let frame = Frame::around(scene_sphere(&spheres, &triangles).as_ref());
-        let mut trunk = Trunk::default();
-        let (spheres, sphere_blocks) = trunk.plant(spheres, &frame);
-        let (triangles, triangle_blocks) = trunk.plant(triangles, &frame);
-        let (root, stack) = trunk.join();
-        let leaves = Leaves::new(spheres, triangles, trunk.index).with_twins(trunk.twins);
-        let nodes = trunk.nodes;
-        Self { leaves, nodes, sphere_blocks, triangle_blocks, root, frame, stack, level: Level::new() }
+        let (trunk, crown) = groups::grow(spheres, triangles);
+        let index = [trunk.spheres.index, trunk.triangles.index].concat();
+        let leaves = Leaves::new(trunk.spheres.leaves, trunk.triangles.leaves, index).with_twins(trunk.twins);
+        Self {
+            leaves,
+            nodes: trunk.nodes,
+            sphere_blocks: trunk.spheres.blocks,
+            triangle_blocks: trunk.triangles.blocks,
+            regions: trunk.regions,
+            crown,
+            stack: trunk.stack,
+            level: Level::new(),
+        }
     }
 
     /// How many primitives the tree holds.
@@ -72,10 +81,6 @@ impl Bvh {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
-    }
-
-    pub(crate) fn triangle_count(&self) -> usize {
-        self.leaves.triangles.len()
     }
 
     /// Returns the primitive with this index: spheres as listed, then triangles as listed.

@@ -245,6 +245,13 @@ impl Child {
     }
 }
 
+/// A part of the scene with a frame of its own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Region {
+    pub(super) frame: Frame,
+    pub(super) root: Child,
+}
+
 /// A ball in cull coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ball {

@@ -9,12 +9,13 @@ use std::ops::Range;
 use fearless_simd::Simd;
 
 use super::Bvh;
+use super::crown::{Part, Tour};
 use super::cull::{CullRay, meet_boxes};
-use super::node::{Block, Blocked, Child, Kind, WIDTH};
+use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
 use crate::leaf::{Leaves, Query};
 use crate::ray::{PreparedRay, is_open};
 use crate::simd::{has_fma, prefetch_lines};
-use crate::{Ray, Visits};
+use crate::{Ray, Sphere, Triangle, Visits};
 
 /// A part of the tree that is still to be visited: the key of its entry above its [`Child`].
 pub(super) type Pending = u64;
@@ -63,8 +64,12 @@ pub(super) fn cast<S: Simd, Q: Query>(
     let is_open = is_open(&within);
     let prepared = PreparedRay::new(ray, within);
     let mut line = CullRay::EVERYTHING;
-    if !is_open || !line.set(simd, &tree.frame, &prepared) {
-        return query.answer(&tree.leaves, &prepared);
+    let mut tour = None;
+    let mut region = tree.regions.first().filter(|_| is_open);
+    if is_open && let Some(crown) = &tree.crown {
+        let tour = tour.insert(Tour::new(crown));
+        tour.begin(crown, &prepared);
+        region = next_region(simd, tour, tree, &prepared, &mut query, visits);
     }
     let (mut small, mut usual, mut large);
     let stack = if tree.stack <= SMALL_STACK {
@@ -77,14 +82,59 @@ pub(super) fn cast<S: Simd, Q: Query>(
         large = vec![0; tree.stack];
         &mut large[..]
     };
-    walk(simd, tree, &prepared, &mut query, &mut line, stack, visits);
+    while let Some(&Region { frame, root }) = region {
+        if line.set(simd, &frame, &prepared) {
+            line.shorten(query.limit());
+            walk(simd, tree, root, &prepared, &mut query, &mut line, stack, visits);
+        }
+        let Some(tour) = &mut tour else { break };
+        region = next_region(simd, tour, tree, &prepared, &mut query, visits);
+    }
     query.answer(&tree.leaves, &prepared)
 }
 
+/// Takes a ray through the crown, with the primitives that stand there alone, to the next region that it may meet.
+#[cold]
+#[inline(never)]
+pub(super) fn next_region<'a, S: Simd, Q: Query>(
+    simd: S,
+    tour: &mut Tour,
+    tree: &'a Bvh,
+    ray: &PreparedRay,
+    query: &mut Q,
+    visits: &mut Visits,
+) -> Option<&'a Region> {
+    let crown = tree.crown.as_ref()?;
+    while !query.is_settled() {
+        let part = tour.next(crown, simd.level(), query.limit(), visits)?;
+        visits.tests += 1;
+        let leaves = &tree.leaves;
+        // (In the arithmetic of the instruction set, which a function that is not inlined has to be told.)
+        match part {
+            Part::Sphere(place) => simd.vectorize(
+                #[inline(always)]
+                || meet::<S, Q, Sphere>(simd, query, place as usize, leaves, ray),
+            ),
+            Part::Triangle(place) => simd.vectorize(
+                #[inline(always)]
+                || meet::<S, Q, Triangle>(simd, query, place as usize, leaves, ray),
+            ),
+            Part::Region(index) => {
+                visits.tests -= 1;
+                return tree.regions.get(index as usize);
+            }
+            Part::Node(_) => unreachable!("a tour goes through nodes"),
+        }
+    }
+    None
+}
+
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "a part of `cast`, inlined into it")]
 fn walk<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
+    root: Child,
     ray: &PreparedRay,
     query: &mut Q,
     line: &mut CullRay,
@@ -95,7 +145,7 @@ fn walk<S: Simd, Q: Query>(
     let areas = Areas::of(tree);
     let fetch = tree.is_large();
     let mut height = 0;
-    let Some(mut at) = tree.root else { return };
+    let mut at = root;
     loop {
         if at.is_inner() {
             let node = &tree.nodes[at.index()];

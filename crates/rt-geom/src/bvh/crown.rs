@@ -1,0 +1,382 @@
+//! The crown: what stands above the regions of a scene whose sizes are too far apart for one frame.
+//!
+//! Its bounds are boxes in doubles, as the scene has them, so a box is met or not with an error relative to the ray's
+//! parameter there: no scale is too small (T. Ize, "Robust BVH Ray Traversal", 2013). The leaves are regions, each a
+//! tree in a frame of its own, and single primitives. `docs/numerics.md`, section 9, has the margins.
+
+use std::ops::Range;
+
+use fearless_simd::{Level, Simd, f64x8, prelude::*};
+use glam::DVec3;
+use rt_math::exact::{U, power_of_two};
+
+use super::node::WIDTH;
+use crate::ray::PreparedRay;
+use crate::simd::dispatch;
+use crate::{Sphere, Triangle, Visits};
+
+/// The rounding errors of a parameter, relative to it.
+const PARAMETER_ERROR: f64 = 8.0 * U;
+/// What parameters err by that underflow.
+const UNDERFLOW: f64 = power_of_two(-1000);
+/// Planes beyond this count as infinitely far, and from origins beyond it everything is met.
+const FARTHEST: f64 = power_of_two(400);
+/// Rays with a component of the direction below this that is not zero meet everything.
+const SHORTEST: f64 = power_of_two(-500);
+
+/// What a child of a crown's node is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Node(u32),
+    Region(u32),
+    /// The primitive at a place.
+    Sphere(u32),
+    Triangle(u32),
+}
+
+/// A box in doubles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Box64 {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Box64 {
+    pub(super) const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+
+    /// Contains the sphere in its interior.
+    pub(super) fn of_sphere(sphere: &Sphere) -> Self {
+        let (center, radius) = (sphere.center(), sphere.radius());
+        Self::outward(center - radius, center + radius)
+    }
+
+    /// Contains the triangle in its interior.
+    pub(super) fn of_triangle(triangle: &Triangle) -> Self {
+        let [a, b, c] = triangle.vertices();
+        Self::outward(a.min(b).min(c), a.max(b).max(c))
+    }
+
+    fn outward(low: DVec3, high: DVec3) -> Self {
+        let down = |x: f64| if x < -FARTHEST { f64::NEG_INFINITY } else { x.min(FARTHEST).next_down() };
+        Self { low: low.to_array().map(down).into(), high: (-high).to_array().map(|x| -down(x)).into() }
+    }
+
+    pub(super) fn merge(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    fn size(&self) -> f64 {
+        (self.high - self.low).max_element()
+    }
+
+    /// Halfway along an axis.
+    fn middle(&self, axis: usize) -> f64 {
+        0.5 * self.low[axis].max(-FARTHEST) + 0.5 * self.high[axis].min(FARTHEST)
+    }
+}
+
+/// Up to sixteen boxes: the three lower planes, then the three upper ones. Children are in order of size.
+#[derive(Clone, Debug)]
+struct Node {
+    planes: [[f64; WIDTH]; 6],
+    children: [Part; WIDTH],
+    len: usize,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Crown {
+    nodes: Vec<Node>,
+    root: Part,
+    /// How many pending entries a walk can need.
+    stack: usize,
+}
+
+impl Default for Crown {
+    fn default() -> Self {
+        Self { nodes: Vec::new(), root: Part::Node(0), stack: 1 }
+    }
+}
+
+impl Crown {
+    /// The whole, with the part at its top.
+    pub(super) fn with_root(self, root: Part) -> Self {
+        // Nodes below a node come before it. A walk that goes down has less than all children of each pending.
+        let mut needs: Vec<usize> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let need = |part: &Part| if let Part::Node(index) = part { needs[*index as usize] } else { 0 };
+            needs.push(node.len + node.children[..node.len].iter().map(need).max().unwrap_or(0));
+        }
+        let stack = 1 + needs.last().copied().unwrap_or(0);
+        Self { root, stack, ..self }
+    }
+
+    /// Appends a tree over the entries, and returns its root.
+    pub(super) fn add(&mut self, mut entries: Vec<(Box64, Part)>) -> Part {
+        if let [(_, part)] = entries[..] {
+            return part;
+        }
+        entries.sort_by(|a, b| a.0.size().total_cmp(&b.0.size()));
+        if entries.len() > WIDTH {
+            entries = self.bundle(entries);
+        }
+        let (low, high) = ([f64::INFINITY; WIDTH], [f64::NEG_INFINITY; WIDTH]);
+        let mut node = Node { planes: [low, low, low, high, high, high], children: [Part::Node(0); WIDTH], len: 0 };
+        for (lane, (bounds, part)) in entries.into_iter().enumerate() {
+            for axis in 0..3 {
+                node.planes[axis][lane] = bounds.low[axis];
+                node.planes[axis + 3][lane] = bounds.high[axis];
+            }
+            node.children[lane] = part;
+            node.len += 1;
+        }
+        self.nodes.push(node);
+        Part::Node(u32::try_from(self.nodes.len() - 1).expect("fewer nodes than primitives"))
+    }
+
+    /// Makes sixteen of more, in order of size: the largest few stay alone, the others are halved again and again.
+    fn bundle(&mut self, mut entries: Vec<(Box64, Part)>) -> Vec<(Box64, Part)> {
+        let largest = entries.last().map_or(0.0, |entry| entry.0.size());
+        let alone = entries.iter().rev().take(WIDTH / 2).take_while(|entry| entry.0.size() >= largest / 8.0).count();
+        let mut out = entries.split_off(entries.len() - alone);
+        let mut bundles = vec![entries];
+        while bundles.len() + alone < WIDTH {
+            bundles.sort_by_key(Vec::len);
+            let mut most = bundles.pop().expect("one at least");
+            let axis = |axis| {
+                let middles = most.iter().map(|entry| entry.0.middle(axis));
+                let (low, high) = middles.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
+                high - low
+            };
+            let axis = DVec3::new(axis(0), axis(1), axis(2)).max_position();
+            let half = most.len() / 2;
+            most.select_nth_unstable_by(half, |a, b| a.0.middle(axis).total_cmp(&b.0.middle(axis)));
+            let rest = most.split_off(half);
+            bundles.extend([most, rest]);
+        }
+        for bundle in bundles.into_iter().filter(|bundle| !bundle.is_empty()) {
+            let bounds = bundle.iter().fold(Box64::EMPTY, |all, entry| all.merge(entry.0));
+            out.push((bounds, self.add(bundle)));
+        }
+        out.sort_by(|a, b| a.0.size().total_cmp(&b.0.size()));
+        out
+    }
+}
+
+/// A child that is still to be visited, and a lower bound of the parameter where the ray enters it.
+type Pending = (f64, Part);
+
+/// Entries that a usual crown needs.
+const SMALL_STACK: usize = 32;
+
+/// The way of one ray through a crown.
+#[derive(Clone, Debug)]
+pub(super) struct Tour {
+    origin: [f64; 3],
+    inverse: [f64; 3],
+    /// Rows of the near planes.
+    near: [usize; 3],
+    within: Range<f64>,
+    /// Whether every box is met.
+    everything: bool,
+    small: [Pending; SMALL_STACK],
+    large: Vec<Pending>,
+    height: usize,
+}
+
+impl Tour {
+    /// For [`begin`](Self::begin) to start.
+    #[inline(always)]
+    pub(super) fn new(crown: &Crown) -> Self {
+        let nothing = (0.0, crown.root);
+        let large = if crown.stack > SMALL_STACK { vec![nothing; crown.stack] } else { Vec::new() };
+        Self {
+            origin: [0.0; 3],
+            inverse: [0.0; 3],
+            near: [0; 3],
+            within: 0.0..0.0,
+            everything: false,
+            small: [nothing; SMALL_STACK],
+            large,
+            height: 0,
+        }
+    }
+
+    /// Sends a ray on its way.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, crown: &Crown, prepared: &PreparedRay) {
+        let PreparedRay { ray, start, end, .. } = *prepared;
+        let (origin, direction) = (ray.origin().to_array(), ray.direction().to_array());
+        let mut ordinary = ray.reach() > 0.0;
+        for axis in 0..3 {
+            self.inverse[axis] = 1.0 / direction[axis];
+            self.near[axis] = axis + 3 * usize::from(direction[axis].is_sign_negative());
+            ordinary &= origin[axis].abs() < FARTHEST;
+            ordinary &= direction[axis].abs() > SHORTEST || direction[axis] == 0.0;
+        }
+        self.origin = origin;
+        self.within = start..end;
+        self.everything = !ordinary;
+        self.height = 1;
+        self.stack()[0] = (start, crown.root);
+    }
+
+    #[inline(always)]
+    fn stack(&mut self) -> &mut [Pending] {
+        if self.large.is_empty() { &mut self.small } else { &mut self.large }
+    }
+
+    /// The nearest region or primitive that is left and that the ray may enter with a parameter of at most `limit`.
+    #[inline(never)]
+    pub(super) fn next(&mut self, crown: &Crown, level: Level, limit: f64, visits: &mut Visits) -> Option<Part> {
+        dispatch!(level, simd => self.advance(simd, crown, limit, visits))
+    }
+
+    #[inline(always)]
+    fn advance<S: Simd>(&mut self, simd: S, crown: &Crown, limit: f64, visits: &mut Visits) -> Option<Part> {
+        while self.height > 0 {
+            self.height -= 1;
+            let height = self.height;
+            let (enter, part) = self.stack()[height];
+            if enter > limit {
+                continue;
+            }
+            let Part::Node(index) = part else { return Some(part) };
+            visits.nodes += 1;
+            let node = &crown.nodes[index as usize];
+            let mut enters = [self.within.start; WIDTH];
+            let mut met = (1 << node.len) - 1;
+            if !self.everything {
+                met &= self.meet(simd, node, &mut enters);
+            }
+            let mut top = height;
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let stack = self.stack();
+                let mut hole = top;
+                // Of two that are entered together the smaller comes first.
+                while hole > height && stack[hole - 1].0 <= enters[lane] {
+                    stack[hole] = stack[hole - 1];
+                    hole -= 1;
+                }
+                stack[hole] = (enters[lane], node.children[lane]);
+                top += 1;
+            }
+            self.height = top;
+        }
+        None
+    }
+
+    /// The boxes met, as bits, and lower bounds of the parameters there.
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, node: &Node, enters: &mut [f64; WIDTH]) -> u32 {
+        let mut met = 0;
+        let (start, end) = (f64x8::splat(simd, self.within.start), f64x8::splat(simd, self.within.end));
+        for (half, enters) in enters.as_chunks_mut::<8>().0.iter_mut().enumerate() {
+            let near = |axis: usize| (self.near[axis], axis, 8 * half);
+            let far = |axis: usize| ((self.near[axis] + 3) % 6, axis, 8 * half);
+            let enter = self.plane(simd, node, near(0)).max(self.plane(simd, node, near(1)));
+            let enter = enter.max(self.plane(simd, node, near(2)));
+            let leave = self.plane(simd, node, far(0)).min(self.plane(simd, node, far(1)));
+            let leave = leave.min(self.plane(simd, node, far(2)));
+            let enter = enter - (enter.abs() * PARAMETER_ERROR + UNDERFLOW);
+            let leave = leave + (leave.abs() * PARAMETER_ERROR + UNDERFLOW);
+            enter.max(start).store_slice(enters);
+            // (NaN, where a line passes outside of planes along it, is no hit.)
+            let mask = enter.simd_le(leave) & enter.simd_le(end) & start.simd_le(leave);
+            met |= u32::try_from(mask.to_bitmask()).expect("eight bits") << (8 * half);
+        }
+        met
+    }
+
+    /// Where the line meets a row of planes. NaN, of a line in a plane, which lies outside the box, meets nothing or
+    /// leaves the decision to the other planes.
+    #[inline(always)]
+    fn plane<S: Simd>(&self, simd: S, node: &Node, (row, axis, lane): (usize, usize, usize)) -> f64x8<S> {
+        (f64x8::from_slice(simd, &node.planes[row][lane..lane + 8]) - self.origin[axis]) * self.inverse[axis]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use oracle::{Random, scale_point};
+
+    use super::*;
+    use crate::Ray;
+
+    /// All that a tour gives.
+    fn met(crown: &Crown, level: Level, ray: &Ray, within: Range<f64>) -> Vec<Part> {
+        let mut tour = Tour::new(crown);
+        tour.begin(crown, &PreparedRay::new(ray, within));
+        std::iter::from_fn(|| tour.next(crown, level, f64::INFINITY, &mut Visits::default())).collect()
+    }
+
+    /// Flat boxes of which one corner is met, within a range of one double, at any scale.
+    #[test]
+    fn the_crown_drops_no_hit_and_most_of_the_rest() {
+        let random = &mut Random::new(3);
+        let (mut hits, mut kept) = (0, 0);
+        for _ in 0..3_000 {
+            let at = |random: &mut Random| {
+                let k = random.integer(-40..40);
+                scale_point(random.point(), k)
+            };
+            let flat = |random: &mut Random| {
+                let (axis, a) = (random.below(3), at(random));
+                let mut corner = || {
+                    let mut b = a + random.uniform() * a.length() * random.point();
+                    b[axis] = a[axis];
+                    b
+                };
+                Triangle::new(a, corner(), corner()).unwrap()
+            };
+            let triangles: Vec<Triangle> = (0..40).map(|_| flat(random)).collect();
+            let mut crown = Crown::default();
+            let root =
+                crown.add((0..).zip(&triangles).map(|(i, t)| (Box64::of_triangle(t), Part::Triangle(i))).collect());
+            let crown = crown.with_root(root);
+            let origin = if random.below(4) == 0 { triangles[1].vertices()[1] } else { at(random) };
+            let along = random.below(40);
+            let [a, b, c] = triangles[along].vertices();
+            let target = random.pick(&[a, b, 0.5 * (a + b), (a + b + c) / 3.0]);
+            let length = random.integer(-90..50);
+            let direction = random.pick(&[target - origin, DVec3::X, DVec3::new(0.0, -1.0, -0.0)]);
+            let Ok(ray) = Ray::new(origin, scale_point(direction, length)) else { continue };
+            for (i, triangle) in (0..).zip(&triangles) {
+                let Some(t) = triangle.closest(&ray, f64::NEG_INFINITY..f64::INFINITY) else { continue };
+                for level in [Level::new(), Level::baseline()] {
+                    let met = met(&crown, level, &ray, t..t.next_up());
+                    assert!(met.contains(&Part::Triangle(i)), "{level:?} {t:?} {ray:?} {triangle:?}");
+                    kept += met.len();
+                    hits += 1;
+                }
+            }
+        }
+        assert!(hits > 1_500 && kept < 6 * hits, "{kept} met for {hits} hits");
+    }
+
+    #[test]
+    fn rays_that_are_not_ordinary_meet_everything_and_others_what_is_far_away() {
+        let far = Sphere::new(DVec3::splat(1e300), 1e299).unwrap();
+        let near = Sphere::new(DVec3::X, 0.5).unwrap();
+        let mut crown = Crown::default();
+        let root =
+            crown.add(vec![(Box64::of_sphere(&far), Part::Sphere(0)), (Box64::of_sphere(&near), Part::Sphere(1))]);
+        let crown = crown.with_root(root);
+        let all = f64::NEG_INFINITY..f64::INFINITY;
+        let [o, x] = [DVec3::ZERO, DVec3::X];
+        // The origin, the direction, and how many may be hit.
+        for (origin, direction, count) in [
+            (o, DVec3::ONE, 2),
+            (o, x, 1),
+            (o, -x, 1),
+            (o, DVec3::Y, 0),
+            (o, x * 1e-300, 2),
+            (o, DVec3::new(1.0, 1e-300, 0.0), 2),
+            (x * 1e200, x, 2),
+        ] {
+            let ray = Ray::new(origin, direction).unwrap();
+            assert_eq!(met(&crown, Level::new(), &ray, all.clone()).len(), count, "{ray:?}");
+        }
+    }
+}
