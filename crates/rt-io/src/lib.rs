@@ -1,5 +1,7 @@
 //! Reads and writes PPM; decodes PNG, JPEG and TIFF; saves atomically. Knows only pixels and files.
 //!
+//! Everything but PPM and saving is the feature `decode`, which is on by default; without it no other crate is needed.
+//!
 //! ```
 //! use rt_io::{Limits, Pixmap, ppm, save_atomically};
 //!
@@ -13,13 +15,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "decode")]
 mod decode;
 mod limits;
 mod pixmap;
+#[cfg(feature = "decode")]
 pub mod png;
 pub mod ppm;
 mod save;
 
+#[cfg(feature = "decode")]
 pub use decode::{DecodeError, Decoded, ReadImageError, decode_image, read_image};
 pub use limits::Limits;
 pub use pixmap::{Pixmap, Samples};

@@ -7,6 +7,7 @@
 mod read;
 mod write;
 
+#[cfg(feature = "decode")]
 pub(crate) use read::read_known;
 pub use read::{Field, PpmError, read, read_bytes, read_with_comments};
 pub use write::{Encoding, write, write_with_comment};

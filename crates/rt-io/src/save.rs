@@ -12,6 +12,8 @@
 //! wrong ones is taken out: to run as the new owner or group, and to the new group whatever was not granted to
 //! everybody.
 
+use std::error::Error;
+use std::fmt;
 #[cfg(unix)]
 use std::fs::Permissions;
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
@@ -20,22 +22,40 @@ use std::path::{self, Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Why a file was not saved. An existing file is as it was before.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 #[non_exhaustive]
 pub enum SaveError {
     /// The path names a folder.
-    #[error("{} is a folder, not a file", path.display())]
     Folder { path: PathBuf },
     /// The folder of the file does not exist.
-    #[error("{}: the folder {} does not exist; create it first", path.display(), folder.display())]
     MissingFolder { path: PathBuf, folder: PathBuf },
     /// The place cannot be written to: no permission, a read-only file or folder, a circle of links.
-    #[error("{}: cannot be written", path.display())]
     Open { path: PathBuf, source: io::Error },
     /// Writing failed on the way: a full disk, a closed pipe, or an error of the writing closure itself.
-    #[error("{}: writing failed", path.display())]
     Write { path: PathBuf, source: io::Error },
+}
+
+impl fmt::Display for SaveError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Folder { path } => write!(f, "{} is a folder, not a file", path.display()),
+            Self::MissingFolder { path, folder } => {
+                write!(f, "{}: the folder {} does not exist; create it first", path.display(), folder.display())
+            }
+            Self::Open { path, .. } => write!(f, "{}: cannot be written", path.display()),
+            Self::Write { path, .. } => write!(f, "{}: writing failed", path.display()),
+        }
+    }
+}
+
+impl Error for SaveError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Open { source, .. } | Self::Write { source, .. } => Some(source),
+            Self::Folder { .. } | Self::MissingFolder { .. } => None,
+        }
+    }
 }
 
 /// Writes the file at `path` by `write`, whole or not at all.

@@ -6,6 +6,7 @@
 //! between `maxval` and a raw raster. The first picture counts; bytes after it are ignored. Stricter than netpbm, which
 //! takes `1.5` for two samples: a number ends at white space, a comment or the end of the file.
 
+use std::error::Error;
 use std::fmt;
 use std::io::{self, Read};
 
@@ -37,49 +38,81 @@ impl fmt::Display for Field {
 }
 
 /// Why a file is not a picture. Each offset counts bytes from the start of the file, the first being 0.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 #[non_exhaustive]
 pub enum PpmError {
     /// The file does not begin with the magic number of a format that is read.
-    #[error("byte 0: expected P3 or P6 (PPM), P2 or P5 (PGM), found {}", magic(.found))]
     Magic { found: Vec<u8> },
     /// A relative of PPM that is not read: P1, P4 (PBM), P7 (PAM).
-    #[error("byte 0: {} is not read; convert it with netpbm: {}", magic(.found), remedy(.found))]
     Relative { found: [u8; 2] },
     /// The file ends inside the header.
-    #[error("byte {offset}: the file ends before {field}")]
     HeaderEnds { offset: u64, field: Field },
     /// Something other than a decimal number: a sign, a letter, a control byte.
-    #[error("byte {offset}: expected {field} in decimal digits, found {}", byte(*.found))]
     NotANumber { offset: u64, field: Field, found: u8 },
     /// Something touches the end of a number: a decimal point, a comma, a letter.
-    #[error("byte {offset}: expected white space after {after}, found {}", byte(*.found))]
     NotSeparated { offset: u64, after: &'static str, found: u8 },
     /// A number above 4294967295.
-    #[error("byte {offset}: {field} must be at most 4294967295")]
     NumberTooLarge { offset: u64, field: Field },
     /// A picture without pixels.
-    #[error("byte {offset}: {field} must be at least 1, found 0")]
     ZeroSize { offset: u64, field: Field },
     /// A `maxval` of 0 or above 65535.
-    #[error("byte {offset}: maxval must be in 1..=65535, found {found}")]
     Maxval { offset: u64, found: u32 },
     /// More pixels than [`Limits::max_pixels`].
-    #[error("byte {offset}: {width} x {height} pixels are more than the limit of {limit}")]
     TooManyPixels { offset: u64, width: u32, height: u32, limit: u64 },
     /// A sample above `maxval`.
-    #[error("byte {offset}: a sample must be at most maxval = {maxval}, found {found}")]
     SampleAboveMaxval { offset: u64, found: u32, maxval: u16 },
     /// The file ends inside the raster.
-    #[error("byte {offset}: the file ends inside the raster: expected {expected} samples, found {found}")]
     RasterEnds { offset: u64, expected: u64, found: u64 },
     /// The operating system has not enough memory for a picture whose bytes are there.
-    #[error("not enough memory for {samples} samples; scale the picture down first")]
     OutOfMemory { samples: u64 },
     /// Reading failed.
-    #[error("byte {offset}: cannot read on")]
     Read { offset: u64, source: io::Error },
+}
+
+impl fmt::Display for PpmError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Magic { found } => {
+                write!(f, "byte 0: expected P3 or P6 (PPM), P2 or P5 (PGM), found {}", magic(found))
+            }
+            Self::Relative { found } => {
+                write!(f, "byte 0: {} is not read; convert it with netpbm: {}", magic(found), remedy(found))
+            }
+            Self::HeaderEnds { offset, field } => write!(f, "byte {offset}: the file ends before {field}"),
+            Self::NotANumber { offset, field, found } => {
+                write!(f, "byte {offset}: expected {field} in decimal digits, found {}", byte(*found))
+            }
+            Self::NotSeparated { offset, after, found } => {
+                write!(f, "byte {offset}: expected white space after {after}, found {}", byte(*found))
+            }
+            Self::NumberTooLarge { offset, field } => write!(f, "byte {offset}: {field} must be at most 4294967295"),
+            Self::ZeroSize { offset, field } => write!(f, "byte {offset}: {field} must be at least 1, found 0"),
+            Self::Maxval { offset, found } => write!(f, "byte {offset}: maxval must be in 1..=65535, found {found}"),
+            Self::TooManyPixels { offset, width, height, limit } => {
+                write!(f, "byte {offset}: {width} x {height} pixels are more than the limit of {limit}")
+            }
+            Self::SampleAboveMaxval { offset, found, maxval } => {
+                write!(f, "byte {offset}: a sample must be at most maxval = {maxval}, found {found}")
+            }
+            Self::RasterEnds { offset, expected, found } => {
+                write!(f, "byte {offset}: the file ends inside the raster: expected {expected} samples, found {found}")
+            }
+            Self::OutOfMemory { samples } => {
+                write!(f, "not enough memory for {samples} samples; scale the picture down first")
+            }
+            Self::Read { offset, .. } => write!(f, "byte {offset}: cannot read on"),
+        }
+    }
+}
+
+impl Error for PpmError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Read { source, .. } => Some(source),
+            _ => None,
+        }
+    }
 }
 
 fn byte(found: u8) -> String {
