@@ -277,9 +277,10 @@ impl Checker<'_> {
 
     fn texture(&self, file: &Spanned<String>) -> Result<Texture, SceneError> {
         let name = file.get_ref();
-        let read = match self.files {
-            Files::Embedded if let Some(bytes) = asset(name) => texture_file::decode(bytes, name),
-            _ => texture_file::load(&self.path(file)?),
+        let embedded = if let Files::Embedded = self.files { asset(name) } else { None };
+        let read = match embedded {
+            Some(bytes) => texture_file::decode(bytes, name),
+            None => texture_file::load(&self.path(file)?),
         };
         read.map_err(|error| self.refuse(file.span(), SceneProblem::Texture(error)))
     }
@@ -400,9 +401,12 @@ impl Checker<'_> {
 
     /// The error `problem` at the start of `span`; lines and columns count from 1, columns in characters.
     fn refuse(&self, span: Range<usize>, problem: SceneProblem) -> SceneError {
-        let before = &self.text[..self.text.floor_char_boundary(self.offset + span.start)];
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+        let end = self.offset + span.start;
+        let before = self.text.char_indices().take_while(|(at, c)| at + c.len_utf8() <= end);
+        let (line, column) = before.fold((1, 1), |(line, column), (_, c)| match c {
+            '\n' => (line + 1, 1),
+            _ => (line, column + 1),
+        });
         SceneError { place: format!("{}:{line}:{column}", self.name), problem: Box::new(problem) }
     }
 }

@@ -235,7 +235,10 @@ fn resolve(path: &Path) -> io::Result<Target> {
 fn temporary_name(target: &Path) -> String {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     // A file name is at most 255 bytes nearly everywhere; the rest of ours takes under 30.
-    let length = name.floor_char_boundary(200);
+    let mut length = name.len().min(200);
+    while !name.is_char_boundary(length) {
+        length -= 1;
+    }
     format!(".{}.", &name[..length])
 }
 

@@ -11,7 +11,6 @@
 //! 4. exact integers: the same, for coefficients of very different size, and what over- or underflows.
 
 use core::cmp::Ordering;
-use core::hint::cold_path;
 
 use crate::exact::stage::{Stage, decided};
 use crate::exact::{
@@ -124,6 +123,10 @@ fn kernel<const FMA: bool>(a: f64, b: f64, c: f64) -> Roots {
     cold_path();
     double_double(a, b, c)
 }
+
+/// Makes the branch that reaches it an unlikely one, as `core::hint::cold_path` does from Rust 1.95 on.
+#[cold]
+fn cold_path() {}
 
 /// The two roots in doubles with corrections, if these decide their rounding; `d` is `D` to 31 bits or better.
 #[inline(always)]

@@ -13,7 +13,7 @@
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::enclosure::{Interval, Leading, enclose, high, low, round};
+use super::enclosure::{Interval, Leading, add_with_carry, enclose, high, low, round, subtract_with_borrow};
 
 /// An exact number: an integer of at most `LIMBS` 64-bit limbs times a power of two, with a sign.
 ///
@@ -271,7 +271,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
         let mut carry = false;
         let at = span(base, other.base);
         for (limb, &more) in sum.limbs[at..at + other.len].iter_mut().zip(other.live()) {
-            (*limb, carry) = limb.carrying_add(more, carry);
+            (*limb, carry) = add_with_carry(*limb, more, carry);
         }
         if carry {
             for limb in &mut sum.limbs[at + other.len..sum.len] {
@@ -298,7 +298,7 @@ impl<const LIMBS: usize> Dyadic<LIMBS> {
         let mut borrow = false;
         let at = span(base, other.base);
         for (limb, &less) in difference.limbs[at..at + other.len].iter_mut().zip(other.live()) {
-            (*limb, borrow) = limb.borrowing_sub(less, borrow);
+            (*limb, borrow) = subtract_with_borrow(*limb, less, borrow);
         }
         if borrow {
             for limb in &mut difference.limbs[at + other.len..difference.len] {

@@ -120,3 +120,19 @@ pub(super) fn low(wide: u128) -> u64 {
 pub(super) fn high(wide: u128) -> u64 {
     low(wide >> 64)
 }
+
+/// `x + y + carry`, and the carry: what `u64::carrying_add` does from Rust 1.91 on.
+#[inline(always)]
+pub(super) fn add_with_carry(x: u64, y: u64, carry: bool) -> (u64, bool) {
+    let (sum, first) = x.overflowing_add(y);
+    let (sum, second) = sum.overflowing_add(carry.into());
+    (sum, first | second)
+}
+
+/// `x - y - borrow`, and the borrow: what `u64::borrowing_sub` does from Rust 1.91 on.
+#[inline(always)]
+pub(super) fn subtract_with_borrow(x: u64, y: u64, borrow: bool) -> (u64, bool) {
+    let (difference, first) = x.overflowing_sub(y);
+    let (difference, second) = difference.overflowing_sub(borrow.into());
+    (difference, first | second)
+}

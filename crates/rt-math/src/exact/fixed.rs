@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use super::double_double::DoubleDouble;
 use super::dyadic::{Dyadic, mantissa_and_weight};
-use super::enclosure::{Leading, enclose, high, low};
+use super::enclosure::{Leading, add_with_carry, enclose, high, low, subtract_with_borrow};
 use super::error_free::U;
 use super::round::round_if_certain;
 use super::scaling::power_of_two;
@@ -97,10 +97,10 @@ impl<const LIMBS: usize> Fixed<LIMBS> {
         let (mut borrow_a, mut borrow_b) = (false, false);
         let (mask_a, mask_b) = (a.sign_mask(), b.sign_mask());
         for j in 0..B {
-            (product[A + j], borrow_a) = product[A + j].borrowing_sub(b.0[j] & mask_a, borrow_a);
+            (product[A + j], borrow_a) = subtract_with_borrow(product[A + j], b.0[j] & mask_a, borrow_a);
         }
         for i in 0..A {
-            (product[B + i], borrow_b) = product[B + i].borrowing_sub(a.0[i] & mask_b, borrow_b);
+            (product[B + i], borrow_b) = subtract_with_borrow(product[B + i], a.0[i] & mask_b, borrow_b);
         }
         let filling = if product[A + B - 1] >> 63 == 1 { u64::MAX } else { 0 };
         product[A + B..].fill(filling);
@@ -353,7 +353,7 @@ impl<const LIMBS: usize> Add for Fixed<LIMBS> {
     fn add(self, other: Self) -> Self {
         let (mut sum, mut carry) = (self.0, false);
         for (limb, &more) in sum.iter_mut().zip(&other.0) {
-            (*limb, carry) = limb.carrying_add(more, carry);
+            (*limb, carry) = add_with_carry(*limb, more, carry);
         }
         Self(sum)
     }
@@ -366,7 +366,7 @@ impl<const LIMBS: usize> Sub for Fixed<LIMBS> {
     fn sub(self, other: Self) -> Self {
         let (mut difference, mut borrow) = (self.0, false);
         for (limb, &less) in difference.iter_mut().zip(&other.0) {
-            (*limb, borrow) = limb.borrowing_sub(less, borrow);
+            (*limb, borrow) = subtract_with_borrow(*limb, less, borrow);
         }
         Self(difference)
     }

@@ -4,7 +4,7 @@
 
 use core::array::from_fn;
 
-use super::enclosure::{high, low};
+use super::enclosure::{add_with_carry, high, low, subtract_with_borrow};
 
 /// A fraction of twice the length, as a sum or a product is before it is cut.
 pub(super) struct Wide<const LIMBS: usize> {
@@ -78,10 +78,10 @@ impl<const LIMBS: usize> Wide<LIMBS> {
     pub(super) fn plus(mut self, other: &Self) -> (Self, bool) {
         let mut carry = false;
         for (x, &y) in self.low.iter_mut().zip(&other.low) {
-            (*x, carry) = x.carrying_add(y, carry);
+            (*x, carry) = add_with_carry(*x, y, carry);
         }
         for (x, &y) in self.high.iter_mut().zip(&other.high) {
-            (*x, carry) = x.carrying_add(y, carry);
+            (*x, carry) = add_with_carry(*x, y, carry);
         }
         (self, carry)
     }
@@ -90,10 +90,10 @@ impl<const LIMBS: usize> Wide<LIMBS> {
     pub(super) fn minus(mut self, other: &Self) -> Self {
         let mut borrow = false;
         for (x, &y) in self.low.iter_mut().zip(&other.low) {
-            (*x, borrow) = x.borrowing_sub(y, borrow);
+            (*x, borrow) = subtract_with_borrow(*x, y, borrow);
         }
         for (x, &y) in self.high.iter_mut().zip(&other.high) {
-            (*x, borrow) = x.borrowing_sub(y, borrow);
+            (*x, borrow) = subtract_with_borrow(*x, y, borrow);
         }
         debug_assert!(!borrow);
         self
@@ -135,7 +135,7 @@ pub(super) fn quotient<const LIMBS: usize>(x: &[u64; LIMBS], y: &[u64; LIMBS]) -
     if whole {
         let mut borrow = false;
         for (r, &y) in rest.iter_mut().zip(y) {
-            (*r, borrow) = r.borrowing_sub(y, borrow);
+            (*r, borrow) = subtract_with_borrow(*r, y, borrow);
         }
     }
     // A short divisor has zeros below, which take nothing away.
@@ -152,16 +152,16 @@ pub(super) fn quotient<const LIMBS: usize>(x: &[u64; LIMBS], y: &[u64; LIMBS]) -
         let (mut carry, mut borrow) = (0, false);
         for (r, &y) in rest[zeros..].iter_mut().zip(&y[zeros..]) {
             let wide = u128::from(estimate) * u128::from(y) + u128::from(carry);
-            (*r, borrow) = r.borrowing_sub(low(wide), borrow);
+            (*r, borrow) = subtract_with_borrow(*r, low(wide), borrow);
             carry = high(wide);
         }
-        (top, borrow) = top.borrowing_sub(carry, borrow);
+        (top, borrow) = subtract_with_borrow(top, carry, borrow);
         for _ in 0..2 {
             if borrow {
                 estimate -= 1;
                 let mut carry = false;
                 for (r, &y) in rest[zeros..].iter_mut().zip(&y[zeros..]) {
-                    (*r, carry) = r.carrying_add(y, carry);
+                    (*r, carry) = add_with_carry(*r, y, carry);
                 }
                 (top, carry) = top.overflowing_add(carry.into());
                 borrow = !carry;
