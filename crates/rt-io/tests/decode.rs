@@ -1,4 +1,5 @@
 //! Every kind of PNG, JPEG and TIFF is either decoded sample by sample or refused by name.
+#![cfg(feature = "decode")]
 
 use std::fs;
 use std::path::Path;

@@ -2,6 +2,7 @@
 //! we decode.
 //!
 //! Each test says so and passes where they are not installed.
+#![cfg(feature = "decode")]
 
 use std::io::Write;
 use std::process::{Command, Stdio};

@@ -1,5 +1,5 @@
 //! A picture for which the system has not enough memory is an error that says how much and what to do, and no abort.
-#![cfg(unix)]
+#![cfg(all(unix, feature = "decode"))]
 
 use std::ffi::OsStr;
 use std::fs::{self, File};

@@ -1,4 +1,5 @@
 //! What is written is read back, whatever the encoding, depth and way in; no bytes at all make a reader panic.
+#![cfg(feature = "decode")]
 
 use proptest::prelude::*;
 use rt_io::ppm::{self, Encoding};
