@@ -27,5 +27,5 @@ mod save;
 #[cfg(feature = "decode")]
 pub use decode::{DecodeError, Decoded, ReadImageError, decode_image, read_image};
 pub use limits::Limits;
-pub use pixmap::{Pixmap, Samples};
+pub use pixmap::{Pixmap, PixmapError, Samples};
 pub use save::{SaveError, save_atomically};

@@ -4,6 +4,8 @@
 //! keeps one sample a pixel, any other three. [`Pixmap::into_stored`] alone shows the difference.
 
 use std::collections::TryReserveError;
+use std::error::Error;
+use std::fmt;
 
 /// An RGB picture: `3 * width * height` samples, row 0 at the top, each in `0..=maxval`.
 ///
@@ -13,7 +15,8 @@ use std::collections::TryReserveError;
 /// use rt_io::Pixmap;
 /// let pixmap = Pixmap::new(2, 1, 255, vec![255, 0, 0, 0, 0, 128]).unwrap();
 /// assert_eq!(pixmap.pixel(1, 0), [0, 0, 128]);
-/// assert_eq!(Pixmap::new(2, 1, 100, vec![255, 0, 0, 0, 0, 128]), None);
+/// let refused = Pixmap::new(2, 1, 100, vec![255, 0, 0, 0, 0, 128]).unwrap_err();
+/// assert_eq!(refused.to_string(), "sample 0 of a picture must be at most maxval = 100, found 255");
 /// ```
 #[derive(Clone, Debug)]
 pub struct Pixmap {
@@ -34,6 +37,37 @@ pub enum Samples {
     Sixteen(Vec<u16>),
 }
 
+/// Why samples are no picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
+pub enum PixmapError {
+    /// There is no column or no row.
+    Empty { width: usize, height: usize },
+    /// The sample of full intensity is 0.
+    ZeroMaxval,
+    /// The samples are not three a pixel.
+    Length { width: usize, height: usize, found: usize },
+    /// A sample exceeds that of full intensity.
+    SampleAboveMaxval { index: usize, found: u16, maxval: u16 },
+}
+
+impl fmt::Display for PixmapError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty { width, height } => write!(f, "a picture must have a pixel, found {width} x {height}"),
+            Self::ZeroMaxval => f.write_str("maxval of a picture must be at least 1, found 0"),
+            Self::Length { width, height, found } => {
+                write!(f, "{width} x {height} pixels need three samples each, found {found} samples in all")
+            }
+            Self::SampleAboveMaxval { index, found, maxval } => {
+                write!(f, "sample {index} of a picture must be at most maxval = {maxval}, found {found}")
+            }
+        }
+    }
+}
+
+impl Error for PixmapError {}
+
 /// Pictures are equal if their pixels and their `maxval` are, however they are stored.
 impl PartialEq for Pixmap {
     fn eq(&self, other: &Self) -> bool {
@@ -52,17 +86,29 @@ impl PartialEq for Pixmap {
 impl Eq for Pixmap {}
 
 impl Pixmap {
-    /// A picture of the interleaved RGB `samples`, or `None` if they break the invariant.
-    pub fn new(width: usize, height: usize, maxval: u16, samples: Vec<u16>) -> Option<Self> {
-        let length = width.checked_mul(height)?.checked_mul(3)?;
-        if maxval == 0 || samples.len() != length || samples.iter().any(|&sample| sample > maxval) {
-            return None;
+    /// A picture of the interleaved RGB `samples`, row by row from the top.
+    ///
+    /// # Errors
+    /// If they break the invariant; [`PixmapError`] says how.
+    pub fn new(width: usize, height: usize, maxval: u16, samples: Vec<u16>) -> Result<Self, PixmapError> {
+        let found = samples.len();
+        if width == 0 || height == 0 {
+            return Err(PixmapError::Empty { width, height });
+        }
+        if maxval == 0 {
+            return Err(PixmapError::ZeroMaxval);
+        }
+        if width.checked_mul(height).and_then(|pixels| pixels.checked_mul(3)) != Some(found) {
+            return Err(PixmapError::Length { width, height, found });
+        }
+        if let Some(index) = samples.iter().position(|&sample| sample > maxval) {
+            return Err(PixmapError::SampleAboveMaxval { index, found: samples[index], maxval });
         }
         let samples = match u8::try_from(maxval) {
             Ok(_) => Samples::Eight(samples.iter().map(|&sample| low_byte(sample)).collect()),
             Err(_) => Samples::Sixteen(samples),
         };
-        Self::from_checked(width, height, maxval, samples)
+        Ok(Self { width, height, maxval, channels: 3, samples })
     }
 
     /// A picture of samples that are known to be at most `maxval` and to have its width; checks the size alone, which
@@ -205,16 +251,18 @@ mod tests {
 
     #[test]
     fn every_broken_invariant_is_refused() {
-        assert!(Pixmap::new(1, 1, 255, vec![0, 0, 255]).is_some());
-        assert_eq!(Pixmap::new(0, 1, 255, vec![]), None);
-        assert_eq!(Pixmap::new(1, 0, 255, vec![]), None);
-        assert_eq!(Pixmap::new(1, 1, 0, vec![0, 0, 0]), None);
-        assert_eq!(Pixmap::new(1, 1, 254, vec![0, 0, 255]), None);
-        assert_eq!(Pixmap::new(1, 1, 65534, vec![0, 0, 65535]), None);
-        assert_eq!(Pixmap::new(1, 1, 255, vec![0, 0]), None);
-        assert_eq!(Pixmap::new(1, 1, 255, vec![0; 4]), None);
-        assert_eq!(Pixmap::new(usize::MAX, 2, 255, vec![0; 6]), None);
-        assert_eq!(Pixmap::new(usize::MAX / 3 + 1, 1, 255, vec![0; 3]), None);
+        assert!(Pixmap::new(1, 1, 255, vec![0, 0, 255]).is_ok());
+        let length = |width, height, found| Err(PixmapError::Length { width, height, found });
+        let above = |index, found, maxval| Err(PixmapError::SampleAboveMaxval { index, found, maxval });
+        assert_eq!(Pixmap::new(0, 1, 255, vec![]), Err(PixmapError::Empty { width: 0, height: 1 }));
+        assert_eq!(Pixmap::new(1, 0, 255, vec![]), Err(PixmapError::Empty { width: 1, height: 0 }));
+        assert_eq!(Pixmap::new(1, 1, 0, vec![0, 0, 0]), Err(PixmapError::ZeroMaxval));
+        assert_eq!(Pixmap::new(1, 1, 254, vec![0, 0, 255]), above(2, 255, 254));
+        assert_eq!(Pixmap::new(1, 1, 65534, vec![0, 65535, 0]), above(1, 65535, 65534));
+        assert_eq!(Pixmap::new(1, 1, 255, vec![0, 0]), length(1, 1, 2));
+        assert_eq!(Pixmap::new(1, 1, 255, vec![0; 4]), length(1, 1, 4));
+        assert_eq!(Pixmap::new(usize::MAX, 2, 255, vec![0; 6]), length(usize::MAX, 2, 6));
+        assert_eq!(Pixmap::new(usize::MAX / 3 + 1, 1, 255, vec![0; 3]), length(usize::MAX / 3 + 1, 1, 3));
     }
 
     #[test]
@@ -244,7 +292,7 @@ mod tests {
             assert_ne!(grey, Pixmap::new(1, 2, maxval, vec![0, 0, 0, 7, 7, 7]).unwrap());
             assert_eq!(grey.into_stored(), samples);
         }
-        assert_eq!(Pixmap::new(2, 1, 255, vec![0, 7]), None, "RGB is asked for");
+        assert!(Pixmap::new(2, 1, 255, vec![0, 7]).is_err(), "RGB is asked for");
     }
 
     #[test]

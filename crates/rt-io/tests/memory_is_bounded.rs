@@ -1,6 +1,5 @@
 //! A small file never makes a reader take more than 64 MiB, whatever it promises, and a whole one takes what it holds.
 #![cfg(feature = "decode")]
-
 #![expect(clippy::cast_possible_truncation, reason = "the sizes of these pictures are small")]
 
 use std::alloc::{GlobalAlloc, Layout, System};

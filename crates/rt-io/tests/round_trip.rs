@@ -31,7 +31,7 @@ fn obvious_plain(text: &str) -> Option<Pixmap> {
     let (width, height, maxval) = (words.next()??, words.next()??, words.next()??);
     let count = 3 * usize::from(width) * usize::from(height);
     let samples = (0..count.min(10_000)).map(|_| words.next()?).collect::<Option<Vec<_>>>()?;
-    Pixmap::new(width.into(), height.into(), maxval, samples)
+    Pixmap::new(width.into(), height.into(), maxval, samples).ok()
 }
 
 /// A change of a file's bytes.

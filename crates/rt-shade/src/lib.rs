@@ -30,4 +30,4 @@ pub use glam;
 pub use mapping::{sphere_uv, texture_uv, texture_uv_within};
 pub use phong::{Errors, Material, PointLight, Shaded, Sides, SurfacePoint, phong, phong_with_sides};
 pub use phong_batch::phong_batch;
-pub use texture::Texture;
+pub use texture::{Texture, TextureError};

@@ -13,6 +13,9 @@
 //!
 //! A map of a sphere closes at the sides and ends at the poles, so `u` wraps around and `v` is clamped.
 
+use std::error::Error;
+use std::fmt;
+
 use glam::DVec3;
 use rt_math::exact::U;
 
@@ -38,16 +41,53 @@ enum Texels {
     Sixteen(Vec<u16>),
 }
 
+/// Why samples are no texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
+pub enum TextureError {
+    /// There is no column or no row.
+    Empty { width: usize, height: usize },
+    /// The sample of full intensity is 0.
+    ZeroMaxval,
+    /// The samples are neither one nor three a texel.
+    Length { width: usize, height: usize, found: usize },
+    /// A sample exceeds that of full intensity.
+    SampleAboveMaxval { index: usize, found: u16, maxval: u16 },
+}
+
+impl fmt::Display for TextureError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Empty { width, height } => write!(f, "a texture must have a texel, found {width} x {height}"),
+            Self::ZeroMaxval => f.write_str("maxval of a texture must be at least 1, found 0"),
+            Self::Length { width, height, found } => {
+                write!(f, "{width} x {height} texels need one sample each or three, found {found} samples in all")
+            }
+            Self::SampleAboveMaxval { index, found, maxval } => {
+                write!(f, "sample {index} of a texture must be at most maxval = {maxval}, found {found}")
+            }
+        }
+    }
+}
+
+impl Error for TextureError {}
+
 impl Texture {
     /// Returns the texture with these samples, row by row from the top: RGB interleaved, or one a texel, which is grey.
     ///
-    /// `None` if a dimension or `maxval` is 0, if there are neither `3 width height` nor `width height` samples, or if
-    /// one of them exceeds `maxval`.
-    #[must_use]
-    pub fn new(width: usize, height: usize, samples: Vec<u16>, maxval: u16) -> Option<Self> {
-        let channels = channels(width, height, samples.len())?;
-        let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
-        valid.then_some(Self { width, height, channels, samples: Texels::Sixteen(samples), maxval })
+    /// ```
+    /// use rt_shade::{Texture, TextureError};
+    ///
+    /// let refused = Texture::new(1, 1, vec![0, 300, 0], 255).unwrap_err();
+    /// assert_eq!(refused, TextureError::SampleAboveMaxval { index: 1, found: 300, maxval: 255 });
+    /// ```
+    ///
+    /// # Errors
+    /// If a dimension or `maxval` is 0, if there are neither `3 width height` nor `width height` samples, or if one of
+    /// them exceeds `maxval`.
+    pub fn new(width: usize, height: usize, samples: Vec<u16>, maxval: u16) -> Result<Self, TextureError> {
+        let channels = channels(width, height, &samples, maxval)?;
+        Ok(Self { width, height, channels, samples: Texels::Sixteen(samples), maxval })
     }
 
     /// Returns the texture with samples that are bytes, as [`new`](Self::new) does with larger ones.
@@ -58,12 +98,12 @@ impl Texture {
     /// let grey = Texture::from_bytes(2, 1, vec![0, 51], 255).unwrap();
     /// assert_eq!(grey.nearest(0.75, 0.5), glam::DVec3::splat(0.2));
     /// ```
-    #[must_use]
-    pub fn from_bytes(width: usize, height: usize, samples: Vec<u8>, maxval: u8) -> Option<Self> {
-        let channels = channels(width, height, samples.len())?;
-        let valid = maxval != 0 && samples.iter().all(|&sample| sample <= maxval);
-        let (samples, maxval) = (Texels::Eight(samples), maxval.into());
-        valid.then_some(Self { width, height, channels, samples, maxval })
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_bytes(width: usize, height: usize, samples: Vec<u8>, maxval: u8) -> Result<Self, TextureError> {
+        let channels = channels(width, height, &samples, maxval.into())?;
+        Ok(Self { width, height, channels, samples: Texels::Eight(samples), maxval: maxval.into() })
     }
 
     /// The number of columns; not 0.
@@ -177,10 +217,27 @@ fn color_of<S: Copy + Into<f64>>(texel: &[S]) -> DVec3 {
     }
 }
 
-/// The number of samples of a texel, from that of the picture; `None` if it fits neither.
-fn channels(width: usize, height: usize, length: usize) -> Option<usize> {
-    let texels = width.checked_mul(height).filter(|&texels| texels != 0)?;
-    [1, 3].into_iter().find(|&channels| texels.checked_mul(channels) == Some(length))
+/// The number of samples of a texel, if these samples are a texture.
+fn channels<S: Copy + Into<u16>>(
+    width: usize,
+    height: usize,
+    samples: &[S],
+    maxval: u16,
+) -> Result<usize, TextureError> {
+    let found = samples.len();
+    if width == 0 || height == 0 {
+        return Err(TextureError::Empty { width, height });
+    }
+    if maxval == 0 {
+        return Err(TextureError::ZeroMaxval);
+    }
+    let fits =
+        |&channels: &usize| width.checked_mul(height).and_then(|texels| texels.checked_mul(channels)) == Some(found);
+    let channels = [1, 3].into_iter().find(fits).ok_or(TextureError::Length { width, height, found })?;
+    match samples.iter().position(|&sample| sample.into() > maxval) {
+        Some(index) => Err(TextureError::SampleAboveMaxval { index, found: samples[index].into(), maxval }),
+        None => Ok(channels),
+    }
 }
 
 /// Returns `u` modulo 1, in `0..=1` (1 itself, and what rounds to it, stay 1); not a finite number: 0.
@@ -222,17 +279,19 @@ mod tests {
 
     #[test]
     fn what_is_no_picture_is_refused() {
-        assert!(Texture::new(2, 1, vec![0, 1, 2, 3, 4, 5], 5).is_some());
-        assert_eq!(Texture::new(2, 1, vec![0, 1, 2, 3, 4, 6], 5), None, "a sample above maxval");
-        assert_eq!(Texture::new(2, 1, vec![0; 5], 5), None, "a sample too few");
-        assert_eq!(Texture::new(2, 1, vec![0; 7], 5), None, "a sample too many");
-        assert_eq!(Texture::new(0, 1, vec![], 5), None, "no column");
-        assert_eq!(Texture::new(1, 0, vec![], 5), None, "no row");
-        assert_eq!(Texture::new(1, 1, vec![0; 3], 0), None, "maxval 0");
-        assert_eq!(Texture::new(usize::MAX, 2, vec![], 5), None, "a product beyond usize");
-        assert_eq!(Texture::from_bytes(1, 1, vec![0, 0, 6], 5), None, "a byte above maxval");
-        assert_eq!(Texture::from_bytes(1, 1, vec![0; 2], 5), None, "a byte too few");
-        assert_eq!(Texture::from_bytes(1, 1, vec![0; 3], 0), None, "maxval 0");
+        assert!(Texture::new(2, 1, vec![0, 1, 2, 3, 4, 5], 5).is_ok());
+        let length = |width, height, found| Err(TextureError::Length { width, height, found });
+        let above = |index| Err(TextureError::SampleAboveMaxval { index, found: 6, maxval: 5 });
+        assert_eq!(Texture::new(2, 1, vec![0, 1, 2, 3, 4, 6], 5), above(5));
+        assert_eq!(Texture::new(2, 1, vec![0; 5], 5), length(2, 1, 5));
+        assert_eq!(Texture::new(2, 1, vec![0; 7], 5), length(2, 1, 7));
+        assert_eq!(Texture::new(0, 1, vec![], 5), Err(TextureError::Empty { width: 0, height: 1 }));
+        assert_eq!(Texture::new(1, 0, vec![], 5), Err(TextureError::Empty { width: 1, height: 0 }));
+        assert_eq!(Texture::new(1, 1, vec![0; 3], 0), Err(TextureError::ZeroMaxval));
+        assert_eq!(Texture::new(usize::MAX, 2, vec![], 5), length(usize::MAX, 2, 0));
+        assert_eq!(Texture::from_bytes(1, 1, vec![0, 6, 0], 5), above(1));
+        assert_eq!(Texture::from_bytes(1, 1, vec![0; 2], 5), length(1, 1, 2));
+        assert_eq!(Texture::from_bytes(1, 1, vec![0; 3], 0), Err(TextureError::ZeroMaxval));
     }
 
     #[test]
