@@ -63,6 +63,22 @@ impl Query for Hits {
     }
 }
 
+/// How many hits there are.
+#[derive(Default)]
+struct Count(usize);
+
+impl Query for Count {
+    type Answer = usize;
+
+    fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
+        leaf.each_hit(ray, |_| self.0 += leaves.indices(place).count());
+    }
+
+    fn answer(&self, _: &Leaves, _: &PreparedRay) -> usize {
+        self.0
+    }
+}
+
 /// Counts what surrounds the ray's origin.
 #[derive(Default)]
 struct Around {
@@ -153,6 +169,24 @@ impl Bvh {
         assert_eq!(rays.len(), hits.len(), "one list for the hits of each ray");
         let parts = rays.par_chunks(BATCH).zip(hits.par_chunks_mut(BATCH));
         parts.for_each(|(rays, hits)| self.batch::<Hits>(rays, &within, hits));
+    }
+
+    /// Returns how many [`hits`](Self::hits) there are: each root of a sphere, each triangle of a shared edge.
+    ///
+    /// Nothing is allocated. What a closed surface makes of a ray is the number of [`crossings`](Self::crossings).
+    #[must_use]
+    pub fn count(&self, ray: &Ray, within: Range<f64>) -> usize {
+        self.query(ray, within, Count::default(), &mut Visits::default())
+    }
+
+    /// [`count`](Self::count) of each ray, in parallel on rayon's current pool.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    pub fn count_batch(&self, rays: &[Ray], within: Range<f64>, counts: &mut [usize]) {
+        assert_eq!(rays.len(), counts.len(), "one place for the count of each ray");
+        let answers = rays.par_iter().zip(counts).with_min_len(64);
+        answers.for_each(|(ray, count)| *count = self.count(ray, within.clone()));
     }
 
     /// Writes where the turned ray of [`Triangle::crosses`] crosses surfaces, in its exact order.
@@ -279,18 +313,33 @@ impl List {
         self.closest(ray, within).is_some()
     }
 
-    /// What [`Bvh::hits`] writes.
-    pub fn hits(&self, ray: &Ray, within: Range<f64>, hits: &mut Vec<Hit>) {
-        hits.clear();
+    fn each_hit(&self, ray: &Ray, within: Range<f64>, mut found: impl FnMut(Hit)) {
         if !is_open(&within) {
             return;
         }
         let prepared = PreparedRay::new(ray, within);
-        self.each(|index, shape| match shape {
-            Shape::Sphere(sphere) => sphere.each_hit(&prepared, |t| hits.push(Hit { index, t })),
-            Shape::Triangle(triangle) => triangle.each_hit(&prepared, |t| hits.push(Hit { index, t })),
+        self.each(|index, shape| {
+            let found = |t| found(Hit { index, t });
+            match shape {
+                Shape::Sphere(sphere) => sphere.each_hit(&prepared, found),
+                Shape::Triangle(triangle) => triangle.each_hit(&prepared, found),
+            }
         });
+    }
+
+    /// What [`Bvh::hits`] writes.
+    pub fn hits(&self, ray: &Ray, within: Range<f64>, hits: &mut Vec<Hit>) {
+        hits.clear();
+        self.each_hit(ray, within, |hit| hits.push(hit));
         sort_hits(hits);
+    }
+
+    /// What [`Bvh::count`] returns.
+    #[must_use]
+    pub fn count(&self, ray: &Ray, within: Range<f64>) -> usize {
+        let mut count = 0;
+        self.each_hit(ray, within, |_| count += 1);
+        count
     }
 
     /// What [`Bvh::crossings`] writes.

@@ -90,6 +90,8 @@ fn the_tree_answers_as_the_list_does() {
             tree.hits(&ray, within.clone(), &mut found);
             list.hits(&ray, within.clone(), &mut expected);
             assert_eq!(found, expected, "{ray:?} in {within:?}");
+            let counts = [tree.count(&ray, within.clone()), list.count(&ray, within.clone())];
+            assert_eq!(counts, [found.len(); 2], "{ray:?} in {within:?}");
             assert_eq!(found.first().copied(), tree.closest(&ray, within.clone()), "{ray:?} in {within:?}");
             assert_eq!(found.first().copied(), list.closest(&ray, within.clone()));
             tree.crossings(&ray, &mut passed);
@@ -320,15 +322,17 @@ fn batches_answer_as_single_questions_do() {
     let rays: Vec<Ray> = (0..200).map(|_| Ray::new(9.0 * random.point(), random.point()).unwrap()).collect();
     let points: Vec<DVec3> = (0..200).map(|_| 5.0 * random.point()).collect();
     let (mut hits, mut crossings) = (vec![Vec::new(); 200], vec![Vec::new(); 200]);
-    let mut sides = vec![Side::On; 200];
+    let (mut counts, mut sides) = (vec![0; 200], vec![Side::On; 200]);
     tree.hits_batch(&rays, AHEAD, &mut hits);
+    tree.count_batch(&rays, AHEAD, &mut counts);
     tree.crossings_batch(&rays, &mut crossings);
     tree.contains_batch(&points, &mut sides);
     let (mut one, mut pass) = (Vec::new(), Vec::new());
     for (i, ray) in rays.iter().enumerate() {
         tree.hits(ray, AHEAD, &mut one);
         tree.crossings(ray, &mut pass);
-        assert_eq!((&hits[i], &crossings[i], sides[i]), (&one, &pass, tree.contains(points[i])));
+        assert_eq!((&hits[i], counts[i], &crossings[i]), (&one, one.len(), &pass));
+        assert_eq!(sides[i], tree.contains(points[i]));
     }
 }
 
