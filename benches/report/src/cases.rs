@@ -16,7 +16,7 @@ pub(super) struct Class<const M: usize> {
 }
 
 /// Makes `count` cases that pass `valid`.
-fn class<const M: usize>(
+pub(super) fn class<const M: usize>(
     name: &'static str,
     count: usize,
     valid: fn(&[f64; M]) -> bool,

@@ -426,7 +426,8 @@ fn worst(kernel: &Kernel) -> Block {
     Block::Table(rows)
 }
 
-fn ulp(distance: f64) -> String {
+/// Says a number of doubles.
+pub(super) fn ulp(distance: f64) -> String {
     match distance {
         d if d >= NAN_DISTANCE => "NaN".to_owned(),
         d if d < 1e4 => format!("{d}"),

@@ -6,6 +6,7 @@
 
 mod cases;
 mod check;
+mod corpus;
 mod cull;
 mod document;
 mod kernels;
@@ -55,6 +56,9 @@ struct ReportOptions {
     /// Measure as FILE was measured, write nothing, and fail unless all errors are equal
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
+    /// Measure nothing; write the hostile corpus, with so many rows for each class of cases
+    #[arg(long, value_name = "ROWS", num_args = 0..=1, default_missing_value = "24", conflicts_with_all = ["quick", "check", "from"])]
+    corpus: Option<usize>,
     /// With --check: also fail where a time differs by more than this factor
     #[arg(long, value_name = "FACTOR", requires = "check", value_parser = factor)]
     factor: Option<f64>,
@@ -89,6 +93,14 @@ fn run(options: &ReportOptions) -> Result<(), Failure> {
         }
         let differences = check::differences(&stored, &Report::measure(stored.effort), options.factor);
         return if differences.is_empty() { Ok(()) } else { Err(Failure::Different(differences)) };
+    }
+    if let Some(rows) = options.corpus {
+        fs::create_dir_all(&options.out).map_err(|error| FileError::new(&options.out, error))?;
+        for (name, text) in corpus::files(rows) {
+            save_atomically(&options.out.join(name), |out| out.write_all(text.as_bytes()))?;
+        }
+        stderr::tell(&format!("report: corpus written to {}", options.out.display()));
+        return Ok(());
     }
     let report = match &options.from {
         Some(path) => read(path)?,

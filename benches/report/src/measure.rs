@@ -211,7 +211,8 @@ pub(super) fn hexadecimal(case: &[f64]) -> String {
     words.join(" ")
 }
 
-fn errors<const M: usize, const N: usize>(
+/// Judges the answers of a method.
+pub(super) fn errors<const M: usize, const N: usize>(
     method: &Method<M, N>,
     cases: &[[f64; M]],
     truths: &[Answer<N>],

@@ -6,6 +6,7 @@
 
 #![allow(clippy::missing_panics_doc, reason = "a panic is how a test fails")]
 
+pub mod corpus;
 pub mod enclosing;
 pub mod files;
 pub mod images;

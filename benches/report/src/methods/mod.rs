@@ -4,6 +4,7 @@
 //! none is made safer than its source makes it. Those that are generic run in `f32` and in `f64`.
 
 mod barycentric;
+mod dot_sign;
 mod enclosing;
 mod inside;
 mod mapping;
@@ -19,6 +20,7 @@ mod texel;
 mod triangle;
 
 pub(super) use barycentric::barycentric;
+pub(super) use dot_sign::{dot_sign, signed};
 pub(super) use enclosing::{COUNT, enclosing};
 pub(super) use inside::inside;
 pub(super) use mapping::{mapping, textbook_coordinates};
