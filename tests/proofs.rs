@@ -1,0 +1,208 @@
+//! The constants of the code and those of the proofs in `docs/proofs` are the same: neither changes without the other.
+//!
+//! Both are read as they are written, so that private constants and numbers in the midst of a formula count as well.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::iter::Peekable;
+use std::path::Path;
+use std::str::Chars;
+
+/// A file of `docs/proofs`; and of each of its constants the name, the file of the code under `crates`, and what stands
+/// before and behind the value there.
+type File = (&'static str, &'static [(&'static str, &'static str, &'static str, &'static str)]);
+
+const FILES: &[File] = &[
+    (
+        "Dot",
+        &[
+            ("ERROR", "rt-math/src/exact/dot.rs", "const ERROR: f64 = ", ";"),
+            ("DIFFERENCE_ERROR", "rt-math/src/exact/dot.rs", "const DIFFERENCE_ERROR: f64 = ", ";"),
+            ("ERROR_FLOOR", "rt-math/src/exact/dot.rs", "const ERROR_FLOOR: f64 = ", ";"),
+        ],
+    ),
+    (
+        "DoubleDouble",
+        &[
+            ("SUM", "rt-math/src/exact/double_double.rs", "| `+`, `-` | ", " u²"),
+            ("PRODUCT", "rt-math/src/exact/double_double.rs", "| `*` | ", " u²"),
+            ("QUOTIENT", "rt-math/src/exact/double_double.rs", "| `/` | ", " u²"),
+            ("ROOT", "rt-math/src/exact/double_double.rs", "| `sqrt` | ", " u²"),
+        ],
+    ),
+    (
+        "ErrorFree",
+        &[("LEAST_PRODUCT", "rt-math/src/exact/error_free.rs", "`a b` is zero or at least ", " in magnitude")],
+    ),
+    (
+        "Locate",
+        &[
+            ("FARTHEST", "rt-geom/src/triangle/locate.rs", "const FARTHEST: f64 = ", ";"),
+            ("UNDERFLOW", "rt-geom/src/triangle/locate.rs", "const UNDERFLOW: f64 = ", ";"),
+            (
+                "TURN_ERROR",
+                "rt-geom/src/triangle/locate.rs",
+                "let error = ",
+                " * (edge * edge * edge) * far + UNDERFLOW;\n    certain_signs([turn(",
+            ),
+            ("VOLUME_ERROR", "rt-geom/src/triangle/locate.rs", "let error = ", " * (edge * edge) * far + UNDERFLOW;"),
+        ],
+    ),
+    (
+        "Sphere",
+        &[
+            ("SMALLEST", "rt-geom/src/sphere/filter.rs", "const SMALLEST: f64 = ", ";"),
+            ("LARGEST", "rt-geom/src/sphere/filter.rs", "const LARGEST: f64 = ", ";"),
+            ("ERROR", "rt-geom/src/sphere/filter.rs", "const ERROR: f64 = ", ";"),
+            ("SIDE_ERROR", "rt-geom/src/sphere/mod.rs", "let error = ", " * (square + radius_square) + UNDERFLOW;"),
+            ("UNDERFLOW", "rt-geom/src/sphere/mod.rs", "const UNDERFLOW: f64 = ", ";"),
+            ("FIRST_AHEAD", "rt-geom/src/sphere/finish.rs", "self.c.abs() > ", " * self.squares;"),
+        ],
+    ),
+    (
+        "Triangle",
+        &[
+            ("SHORTEST", "rt-geom/src/triangle/mod.rs", "const SHORTEST: f64 = ", ";"),
+            ("FARTHEST", "rt-geom/src/triangle/mod.rs", "const FARTHEST: f64 = ", ";"),
+            ("ERROR", "rt-geom/src/triangle/filter.rs", "const ERROR: f64 = ", ";"),
+            ("AREA_ERROR", "rt-geom/src/triangle/mod.rs", "area > ", " * self.edge * self.edge;"),
+        ],
+    ),
+];
+
+#[test]
+fn constants_of_the_code_are_those_of_the_proofs() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &Path| fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    for (file, constants) in FILES {
+        let proofs = read(&root.join(format!("docs/proofs/{file}.v")));
+        let proved: BTreeMap<_, _> = proofs.lines().filter_map(definition).collect();
+        let coded = constants.iter().map(|(name, path, before, after)| {
+            let code = read(&root.join("crates").join(path));
+            (
+                *name,
+                between(&code, before, after).unwrap_or_else(|| panic!("{path} has not one {before:?} .. {after:?}")),
+            )
+        });
+        assert_eq!(proved, coded.collect(), "docs/proofs/{file}.v on the left, the code on the right");
+    }
+}
+
+#[test]
+fn every_file_of_proofs_is_compared() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/proofs");
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut found: Vec<_> = files.filter(|path| path.extension().is_some_and(|extension| extension == "v")).collect();
+    found.sort();
+    let names = found.iter().map(|path| path.file_stem().unwrap().to_str().unwrap()).filter(|&name| name != "Rounding");
+    assert!(names.eq(FILES.iter().map(|(name, _)| *name)), "{found:?}");
+}
+
+/// The value that stands in a text between two others, if exactly one does.
+fn between(text: &str, before: &str, after: &str) -> Option<f64> {
+    let mut values = text.match_indices(before).filter_map(|(at, _)| {
+        let (value, _) = text[at + before.len()..].split_once(after)?;
+        (value.len() < 40).then(|| evaluated(value)).flatten()
+    });
+    values.next().filter(|_| values.next().is_none())
+}
+
+/// `Definition NAME := value.` with a name in capitals.
+fn definition(line: &str) -> Option<(&str, f64)> {
+    let (name, value) = line.strip_prefix("Definition ")?.split_once(" := ")?;
+    let is_constant = name.len() > 1 && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
+    let value = || evaluated(value.strip_suffix('.')?.trim_end_matches("%Z"));
+    is_constant.then(|| (name, value().unwrap_or_else(|| panic!("not evaluated: {line}"))))
+}
+
+type Input<'a> = Peekable<Chars<'a>>;
+
+/// The value of an expression as either language writes it.
+fn evaluated(text: &str) -> Option<f64> {
+    let input = &mut text.chars().peekable();
+    let value = sum(input)?;
+    next(input).is_none().then_some(value)
+}
+
+fn next(input: &mut Input) -> Option<char> {
+    while input.next_if(|c| c.is_whitespace()).is_some() {}
+    input.peek().copied()
+}
+
+fn sum(input: &mut Input) -> Option<f64> {
+    let mut value = product(input)?;
+    while let Some(sign @ ('+' | '-')) = next(input) {
+        input.next();
+        let term = product(input)?;
+        value = if sign == '+' { value + term } else { value - term };
+    }
+    Some(value)
+}
+
+fn product(input: &mut Input) -> Option<f64> {
+    let mut value = factor(input)?;
+    while let Some(sign @ ('*' | '/')) = next(input) {
+        input.next();
+        let factor = factor(input)?;
+        value = if sign == '*' { value * factor } else { value / factor };
+    }
+    Some(value)
+}
+
+/// A number, a word for one, a power of two, a sum in parentheses, or the opposite of a factor.
+fn factor(input: &mut Input) -> Option<f64> {
+    match next(input)? {
+        '(' => {
+            input.next();
+            let value = sum(input)?;
+            next(input)?;
+            (input.next() == Some(')')).then_some(value)
+        }
+        '-' => {
+            input.next();
+            Some(-factor(input)?)
+        }
+        c if c.is_ascii_digit() => {
+            let mut digits = String::new();
+            while let Some(digit) = input.next_if(|c| c.is_ascii_digit() || "._e".contains(*c)) {
+                digits.push(digit);
+                if digit == 'e'
+                    && let Some(sign) = input.next_if_eq(&'-')
+                {
+                    digits.push(sign);
+                }
+            }
+            // 2⁻⁹⁶⁸ in a docstring
+            let mut exponent = String::new();
+            while let Some(c) = input.next_if(|c| "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(*c)) {
+                exponent.push("-0123456789".chars().nth("⁻⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|s| s == c)?)?);
+            }
+            let value: f64 = digits.replace('_', "").parse().ok()?;
+            if exponent.is_empty() { Some(value) } else { Some(value.powi(exponent.parse().ok()?)) }
+        }
+        _ => {
+            let mut word = String::new();
+            while let Some(letter) = input.next_if(|c| c.is_ascii_alphanumeric() || "_:".contains(*c)) {
+                word.push(letter);
+            }
+            match word.as_str() {
+                "u" | "U" => Some(f64::EPSILON / 2.0),
+                "bp" | "power_of_two" => Some(factor(input)?.exp2()),
+                "f64::MIN_POSITIVE" => Some(f64::MIN_POSITIVE),
+                _ => None,
+            }
+        }
+    }
+}
+
+#[test]
+fn both_ways_of_writing_are_read() {
+    let value = Some(17.0 * 2f64.powi(-53));
+    assert_eq!([evaluated("17 * u"), evaluated("17.0 * U")], [value, value]);
+    assert_eq!(definition("Definition A_2 := (1 - 4 * u) * bp (-3)."), Some(("A_2", 0.125 - 2f64.powi(-54))));
+    assert_eq!([evaluated("power_of_two(-968)"), evaluated("2⁻⁹⁶⁸")], [Some(2f64.powi(-968)); 2]);
+    assert_eq!([evaluated("16 / 10"), evaluated("1.6"), evaluated("1e-40")], [Some(1.6), Some(1.6), Some(1e-40)]);
+    assert_eq!([definition("Definition tsum := tdot a b."), evaluated("2 +").map(|x| ("", x))], [None, None]);
+    assert_eq!(between("let a = 1.0; let b = 7.0 * U * a;", "let b = ", " * a"), Some(7.0 * 2f64.powi(-53)));
+    assert_eq!(between("e = 1; e = 2;", "e = ", ";"), None);
+}
