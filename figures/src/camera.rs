@@ -40,14 +40,14 @@ pub enum CameraError {
 }
 
 impl Camera {
-    /// Returns the camera for objects that come without one: it looks from the direction `from`, which is not upright,
-    /// moves so that everything is seen, and has a field of view of 28 degrees, so that things far from the middle are
-    /// hardly stretched.
+    /// Returns the camera for objects that come without one: it looks from the direction `from`, moves so that
+    /// everything is seen, and has a field of view of 28 degrees, so that things far from the middle are hardly
+    /// stretched.
     ///
     /// # Panics
-    /// If `from` is zero, not finite, or along the y axis.
-    pub fn stage(from: DVec3) -> Self {
-        Self::new(from, DVec3::ZERO, DVec3::Y, 28.0).expect("a direction that is not upright").fitted()
+    /// If `from` or `up` is zero or not finite, or if they are parallel.
+    pub fn stage(from: DVec3, up: DVec3) -> Self {
+        Self::new(from, DVec3::ZERO, up, 28.0).expect("two directions").fitted()
     }
 
     /// Returns the camera at `eye` that sees `look_at` in the middle of the picture and `up` upwards, with the
@@ -142,6 +142,23 @@ fn tangent_of_half(degrees: f64) -> f64 {
     let x = degrees * (std::f64::consts::PI / 360.0);
     let below = [21.0, 19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
     x / below.into_iter().fold(f64::INFINITY, |rest, odd| odd - x * x / rest)
+}
+
+/// Returns the cosine and the sine of an angle in degrees, which is finite: the same bits on every platform, and exact
+/// for multiples of 90.
+pub(crate) fn cos_sin(degrees: f64) -> (f64, f64) {
+    let degrees = degrees % 360.0;
+    let quarter = (degrees / 90.0).round();
+    // Within -45..=45.
+    let rest = degrees - 90.0 * quarter;
+    let t = tangent_of_half(rest.abs());
+    let (cos, sin) = ((1.0 - t * t) / (1.0 + t * t), (2.0 * t / (1.0 + t * t)).copysign(rest));
+    match quarter.rem_euclid(4.0) {
+        0.0 => (cos, sin),
+        1.0 => (-sin, cos),
+        2.0 => (-cos, -sin),
+        _ => (sin, -cos),
+    }
 }
 
 /// The size of a picture, and how finely it is sampled.
@@ -253,6 +270,24 @@ mod tests {
     }
 
     #[test]
+    fn cosine_and_sine_are_those_of_the_angle() {
+        for step in -800_i32..800 {
+            let degrees = f64::from(step) * 0.9;
+            let (cos, sin) = cos_sin(degrees);
+            let expected = degrees.to_radians();
+            let distance = (cos - expected.cos()).abs().max((sin - expected.sin()).abs());
+            // The argument of the reference is rounded: up to 13 radians.
+            assert!(distance < 16.0 * f64::EPSILON, "{degrees}: {distance:e}");
+        }
+        let exact = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)];
+        for (at, expected) in
+            (-8..9_i32).map(|quarter| (f64::from(quarter) * 90.0, exact[quarter.rem_euclid(4) as usize]))
+        {
+            assert_eq!(cos_sin(at), expected, "{at}");
+        }
+    }
+
+    #[test]
     fn up_is_up_and_right_is_right() {
         let camera = Camera::new(DVec3::X * 5.0, DVec3::ZERO, DVec3::Y, 60.0).unwrap();
         let [right, up, forward] = camera.axes();
@@ -267,7 +302,7 @@ mod tests {
         let turned = Camera::new(DVec3::X, DVec3::new(-3.0, 2.0, 9.0), DVec3::Y, 50.0).unwrap();
         for (camera, width, height) in [
             (Camera::default(), 64, 48),
-            (Camera::stage(DVec3::new(12.0, 9.0, 20.0)), 48, 64),
+            (Camera::stage(DVec3::new(12.0, 9.0, 20.0), DVec3::Y), 48, 64),
             (turned, 10, 10),
             (turned, 500, 10),
         ] {

@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
 use crate::generate::{ColoredBall, Rule};
-use crate::options::{Depth, DrawOptions, PictureSize};
+use crate::options::{ChangeOptions, Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
 use crate::output::{self, Format, Target};
 use crate::{ask, convert, draw, generate, memory};
@@ -40,10 +40,20 @@ struct Arguments {
 enum Command {
     /// List the six figures
     List,
-    /// Draw a scene, or a file of spheres or triangles
+    /// Draw scenes, molecules or meshes, each into a picture of its own: out/NAME.png
+    #[command(after_help = "Examples:\n  \
+            figures render molecule.pdb -o molecule.png\n  \
+            figures render --view iso --background white part.stl\n  \
+            figures render --frame 10 --radius-scale 0.3 run.xyz.gz -o run/\n  \
+            figures render a.ply b.obj scene.toml -o pictures/\n  \
+            zcat molecule.pdb.gz | figures render - -o - > molecule.png\n\
+            Without a scene file objects lie on a stage: a camera that sees all of them, lights, a dark background.")]
     Render {
-        /// A scene in TOML, spheres in XYZ, or a mesh in OBJ
-        scene: PathBuf,
+        /// Scenes in TOML; spheres in XYZ or PDB; meshes in OBJ, PLY or STL; any of them packed with gzip; `-` for stdin
+        #[arg(required = true, value_name = "FILE|-")]
+        files: Vec<PathBuf>,
+        #[command(flatten)]
+        changes: ChangeOptions,
         #[command(flatten)]
         options: DrawOptions,
     },
@@ -90,7 +100,7 @@ enum Command {
     )]
     #[command(group(clap::ArgGroup::new("question").required(true)))]
     Ask {
-        /// A mesh in OBJ, spheres in XYZ, or a scene in TOML
+        /// A mesh in OBJ, PLY or STL, spheres in XYZ or PDB, or a scene in TOML
         mesh: PathBuf,
         /// Points, three numbers a line, or an XYZ file; `-` for stdin
         #[arg(long, value_name = "FILE|-", group = "question")]
@@ -187,7 +197,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
             let lines = FIGURES.iter().map(|figure| format!("{}  {}\n", figure.number, figure.title));
             to_stdout(lines.collect::<String>().as_bytes())
         }
-        Some(Command::Render { scene, options }) => draw::scene_file(&scene, &options),
+        Some(Command::Render { files, changes, options }) => draw::files(&files, &changes, &options),
         Some(Command::Convert { input, output, format, depth, quiet }) => {
             convert::convert(&input, &output, format, depth.map(Depth::maxval), quiet)
         }

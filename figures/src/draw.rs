@@ -14,14 +14,15 @@ use serde::Serialize;
 use crate::camera::{Size, View};
 use crate::certify::Certified;
 use crate::figure::Figure;
+use crate::load::Changes;
 use crate::objects::{Method, Objects};
-use crate::options::{DrawOptions, PictureSize};
+use crate::options::{ChangeOptions, DrawOptions, PictureSize};
 use crate::outcome::{Failure, to_stdout};
 use crate::output::{Destination, Format, Target};
 use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::tile::{self, Label};
-use crate::{import, memory, scene_file, stderr};
+use crate::{load, memory, stderr};
 
 /// Work that ends sooner than this shows no progress.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -70,34 +71,60 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
     if folder && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("six pictures need a folder: --out DIR".to_owned()));
     }
-    let destination = destination(options, folder)?;
+    let destination = destination(options, folder, Format::Ppm)?;
     let pool = pool(options)?;
     figures.iter().try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), &destination, options, &pool))
 }
 
-/// Draws the scene file at `path`.
+/// Draws each of the files, with these changes, into a picture of its own.
 ///
 /// # Errors
 /// As [`figures`].
-pub fn scene_file(path: &Path, options: &DrawOptions) -> Result<(), Failure> {
-    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    draw(&name, || load(path), &destination(options, false)?, options, &pool(options)?)
+pub fn files(paths: &[PathBuf], changes: &ChangeOptions, options: &DrawOptions) -> Result<(), Failure> {
+    let several = paths.len() > 1;
+    if several && options.out.as_deref() == Some(Path::new("-")) {
+        return Err(Failure::Usage("several pictures need a folder: --out DIR".to_owned()));
+    }
+    let names: Vec<String> = paths.iter().map(|path| picture_name(path)).collect();
+    for (at, name) in names.iter().enumerate() {
+        if let Some(first) = names[..at].iter().position(|other| other == name) {
+            let [first, second] = [first, at].map(|at| paths[at].display());
+            return Err(Failure::Usage(format!("{first} and {second} would be one picture, {name}; draw them apart")));
+        }
+    }
+    // A tile is a PPM.
+    let default = if options.tile.is_some() { Format::Ppm } else { Format::Png };
+    let destination = destination(options, several, default)?;
+    let pool = pool(options)?;
+    let &ChangeOptions { view, radius_scale, frame } = changes;
+    let changes = &Changes { view, radius_scale, frame };
+    paths
+        .iter()
+        .zip(&names)
+        .try_for_each(|(path, name)| draw(name, || load::load(path, changes), &destination, options, &pool))
+}
+
+/// The name of the picture of a file: its own, without its ending and that of gzip.
+fn picture_name(path: &Path) -> String {
+    if path == Path::new("-") {
+        return "stdin".to_owned();
+    }
+    let packed = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
+    let path = if packed { path.with_extension("") } else { path.to_owned() };
+    path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Reads a scene file, or a bulk file on a stage.
 pub(crate) fn load(path: &Path) -> Result<Scene, Failure> {
-    match import::load(path) {
-        Some(scene) => Ok(scene?),
-        None => Ok(scene_file::load(path)?),
-    }
+    load::load(path, &Changes::default())
 }
 
 /// Where the pictures go, and all that is wrong with the options before any work.
-fn destination(options: &DrawOptions, folder: bool) -> Result<Destination, Failure> {
+fn destination(options: &DrawOptions, folder: bool, default: Format) -> Result<Destination, Failure> {
     if options.json && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("--json and --out - both write to stdout; choose one".to_owned()));
     }
-    let destination = Destination::new(options.out.as_deref(), options.format, folder)?;
+    let destination = Destination::new(options.out.as_deref(), options.format, folder, default)?;
     if options.tile.is_some() && destination.format() == Format::Png {
         return Err(Failure::Usage("a tile is a PPM; merge can write PNG".to_owned()));
     }

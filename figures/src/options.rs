@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 
 use crate::objects::Method;
 use crate::output::Format;
+use crate::stage::Direction;
 use crate::tile::Tile;
 
 /// The largest number of pixels in a picture: 1.5 GiB of samples.
@@ -29,7 +30,8 @@ pub struct DrawOptions {
     /// Take N x N samples in each pixel
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub samples: u32,
-    /// The format to write, whatever the name [default: by the ending of FILE, else ppm]
+    /// The format to write, whatever the name [default: by the ending of FILE, else PNG for `render`, PPM
+    /// for the six figures]
     #[arg(long)]
     pub format: Option<Format>,
     /// Bits per sample
@@ -47,6 +49,33 @@ pub struct DrawOptions {
     /// Write size, rays, hits, seconds and memory to stdout as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// What is changed in the files that are drawn.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ChangeOptions {
+    /// Look from x, y, z, iso, or from AZ degrees about +z, from +x, and EL above the ground; +z is up, for z +y
+    ///
+    /// Only for what lies on the stage: files without a scene, and scenes with `stage = true`.
+    #[arg(long, value_name = "x|y|z|iso|AZ,EL", allow_hyphen_values = true)]
+    pub view: Option<Direction>,
+    /// Multiply the radii of all spheres
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    pub radius_scale: Option<f64>,
+    /// Draw this frame of an XYZ file, or model of a PDB file [default: 1]
+    #[arg(long, value_name = "N", value_parser = frame)]
+    pub frame: Option<u64>,
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(factor) if factor > 0.0 && f64::is_finite(factor) => Ok(factor),
+        _ => Err("expected a number more than 0".to_owned()),
+    }
+}
+
+fn frame(text: &str) -> Result<u64, String> {
+    text.parse().ok().filter(|&frame| frame > 0).ok_or_else(|| "expected a whole number, 1 or more".to_owned())
 }
 
 /// Columns and rows of a picture.

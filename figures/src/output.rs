@@ -30,13 +30,14 @@ impl Format {
         }
     }
 
-    /// The format that a file's name asks for, raw PPM where it asks for none.
+    /// The format that a file's name asks for, `default` where it asks for none.
     ///
     /// # Errors
     /// Wrong usage: an [`ending`] of something that is not written here.
-    pub fn of(path: &Path) -> Result<Self, Failure> {
+    pub fn of(path: &Path, default: Self) -> Result<Self, Failure> {
         match ending(path).as_deref() {
-            None | Some("ppm") => Ok(Self::Ppm),
+            None => Ok(default),
+            Some("ppm") => Ok(Self::Ppm),
             Some("png") => Ok(Self::Png),
             Some(other) => Err(Failure::Usage(format!(
                 "{}: expected a name that ends in .ppm or .png, found .{other}; --format writes any name",
@@ -120,14 +121,14 @@ enum OutPlace {
 }
 
 impl Destination {
-    /// Finds where pictures go when the user said `out`, and the format: the one asked for, else by the name, else PPM.
+    /// Finds where pictures go when the user said `out`, and the format: the one asked for, else by the name, else `default`.
     ///
     /// `-` is stdout. A folder that exists and anything that ends in a slash is a folder; with `folder` so is any other
     /// path.
     ///
     /// # Errors
     /// Wrong usage: no format asked for, and an ending that is not written, or a new folder with a name like a file's.
-    pub fn new(out: Option<&Path>, format: Option<Format>, folder: bool) -> Result<Self, Failure> {
+    pub fn new(out: Option<&Path>, format: Option<Format>, folder: bool, default: Format) -> Result<Self, Failure> {
         let out = out.unwrap_or(Path::new("out/"));
         let place = if out == Path::new("-") {
             OutPlace::Stdout
@@ -138,12 +139,12 @@ impl Destination {
         };
         let format = match (format, &place) {
             (Some(format), _) => format,
-            (None, OutPlace::File(path)) => Format::of(path)?,
+            (None, OutPlace::File(path)) => Format::of(path, default)?,
             (None, OutPlace::Folder(path)) => {
                 check_new_folder(path)?;
-                Format::Ppm
+                default
             }
-            (None, OutPlace::Stdout) => Format::Ppm,
+            (None, OutPlace::Stdout) => default,
         };
         Ok(Self { place, format })
     }
@@ -194,7 +195,7 @@ impl Target {
         match (asked, self) {
             (Some(format), _) => Ok(format),
             (None, Self::Stdout) => Ok(Format::Ppm),
-            (None, Self::File(path)) => Format::of(path),
+            (None, Self::File(path)) => Format::of(path, Format::Ppm),
         }
     }
 

@@ -66,6 +66,14 @@ impl Scene {
         assert!(!self.triangles.iter().any(Triangle::is_degenerate));
     }
 
+    /// Multiplies the radius of each sphere; `None`, and some of them as they were, if that leaves the f64 range.
+    pub fn scale_radii(&mut self, factor: f64) -> Option<()> {
+        self.spheres.iter_mut().try_for_each(|sphere| {
+            *sphere = Sphere::new(sphere.center(), factor * sphere.radius()).ok()?;
+            Some(())
+        })
+    }
+
     /// Adds a look to the list, and returns its index; `None` if there are [`LookIndex::MOST`] already.
     pub fn add_look(&mut self, look: Look) -> Option<LookIndex> {
         let index = LookIndex::look(self.looks.len())?;

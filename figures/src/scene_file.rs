@@ -20,12 +20,15 @@ use toml::Spanned;
 
 use crate::assets::asset;
 use crate::camera::{Camera, CameraError};
-use crate::import::{ImportError, obj, xyz};
+use crate::import::spheres::Options;
+use crate::import::{ImportError, load_mesh, load_spheres};
+use crate::load::Changes;
 use crate::scene::{DEFAULT_MATERIAL, Filter, Look, LookIndex, Paint, Scene};
 use crate::text::{Utf16, escaped, file_name, listed, meant, quoted, without_mark};
 use crate::texture_file;
 use tables::{
-    AnyNumber, CameraTable, MaterialTable, NumberEntry, SceneTable, SpheresTable, TriangleTable, Triple, VectorEntry,
+    AnyNumber, CameraTable, LightTable, MaterialTable, NumberEntry, SceneTable, SpheresTable, TriangleTable, Triple,
+    VectorEntry,
 };
 
 /// The largest scene file that is read. More spheres than fit belong into a bulk file.
@@ -86,6 +89,16 @@ enum SceneProblem {
     NotEmbedded(String),
     #[error(transparent)]
     Import(ImportError),
+    #[error("the scene is on the stage (stage = true), which has its own; remove the {0} or the stage")]
+    Staged(&'static str),
+    #[error("the scene has a camera of its own; --view is for files, and scenes with stage = true")]
+    OwnCamera,
+    #[error("a light has either a position or a camera, its place relative to the camera")]
+    LightPlace,
+    #[error("frame must be 1 or more, found {0}")]
+    Frame(i64),
+    #[error("no radius is finite if it is multiplied by {0:?}")]
+    Radii(f64),
     #[error("no objects; add a [[sphere]], [[spheres]], [[triangle]] or [[mesh]]")]
     Empty,
     #[error("more than {} materials", LookIndex::MOST)]
@@ -107,17 +120,25 @@ enum Files<'a> {
 /// The first error in the file or in the files that it names, with its place.
 pub fn load(path: &Path) -> Result<Scene, SceneError> {
     let name = file_name(path);
-    let refuse = |problem| SceneError { place: name.clone(), problem: Box::new(problem) };
+    let refuse = |error| SceneError { place: name.clone(), problem: Box::new(SceneProblem::Read(error)) };
+    let file = File::open(path).map_err(refuse)?;
+    read(file, &name, path.parent().unwrap_or(Path::new("")), &Changes::default())
+}
+
+/// Reads a scene from `source`, which errors call `name`; the files that it names are looked up in `folder`.
+///
+/// # Errors
+/// As [`load`].
+pub(crate) fn read(source: impl Read, name: &str, folder: &Path, changes: &Changes) -> Result<Scene, SceneError> {
+    let refuse = |problem| SceneError { place: name.to_owned(), problem: Box::new(problem) };
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| refuse(SceneProblem::Read(error)))?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| refuse(SceneProblem::Read(error)))?;
+    source.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| refuse(SceneProblem::Read(error)))?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(refuse(SceneProblem::TooLarge));
     }
     let bytes = without_mark(&bytes).map_err(|error| refuse(SceneProblem::Utf16(error)))?;
     let text = str::from_utf8(bytes).map_err(|_| refuse(SceneProblem::NotText))?;
-    let files = Files::Folder(path.parent().unwrap_or(Path::new("")));
-    Checker { text, name: &name, files, offset: 0 }.scene(GROUP_BYTES)
+    Checker { text, name, files: Files::Folder(folder), offset: 0, changes }.scene(GROUP_BYTES)
 }
 
 /// Reads a scene that is part of the program; it may name no files but those that are part of it too.
@@ -125,7 +146,8 @@ pub fn load(path: &Path) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`load`].
 pub fn embedded(text: &str, name: &str) -> Result<Scene, SceneError> {
-    Checker { text, name, files: Files::Embedded, offset: 0 }.scene(GROUP_BYTES)
+    let changes = &Changes::default();
+    Checker { text, name, files: Files::Embedded, offset: 0, changes }.scene(GROUP_BYTES)
 }
 
 /// Turns tables into a scene. Its methods check one kind of value each.
@@ -136,6 +158,7 @@ struct Checker<'a> {
     files: Files<'a>,
     /// Where in the text the part begins in which spans count.
     offset: usize,
+    changes: &'a Changes,
 }
 
 /// A scene that is being made.
@@ -145,6 +168,11 @@ struct Draft<'a> {
     materials: BTreeMap<&'a str, LookIndex>,
     /// The look that triangles without a material share, once there is one.
     bare: Option<LookIndex>,
+    /// Whether the scene has the stage's camera and lights.
+    stage: bool,
+    /// The lights that turn with the camera, by their position in the list: to its right, up and back from the middle,
+    /// in radii of the scene; and where their tables are.
+    camera_lights: Vec<(usize, DVec3, Range<usize>)>,
 }
 
 /// Checks a value that may be left out, which means `default`.
@@ -156,9 +184,19 @@ impl Checker<'_> {
     /// Checks all of the text. If it is longer than `group`, its elements are parsed in groups of about that size.
     fn scene(&self, group: usize) -> Result<Scene, SceneError> {
         let (table, groups) = self.tables(group)?;
-        let mut draft = Draft::default();
+        let mut draft = Draft { stage: table.stage.as_ref().is_some_and(|stage| *stage.get_ref()), ..Draft::default() };
+        match (&table.camera, self.changes.view) {
+            (Some(camera), _) if draft.stage => {
+                return Err(self.refuse(camera.span(), SceneProblem::Staged("[camera]")));
+            }
+            (camera, Some(_)) if !draft.stage => {
+                let place = camera.as_ref().map_or(0..0, Spanned::span);
+                return Err(self.refuse(place, SceneProblem::OwnCamera));
+            }
+            _ => {}
+        }
         draft.scene.camera = or(table.camera.as_ref(), Camera::default(), |camera| self.camera(camera))?;
-        draft.scene.background = or(table.background.as_ref(), DVec3::ZERO, |color| self.color("background", color))?;
+        let background = table.background.as_ref().map(|color| self.color("background", color)).transpose()?;
         for (name, material) in &table.material {
             let look = self.look(name, material)?;
             draft.materials.insert(name, self.add_look(&mut draft.scene, look, material.span())?);
@@ -176,16 +214,34 @@ impl Checker<'_> {
         }
         for mesh in &table.mesh {
             let look = match &mesh.material {
-                Some(material) => self.color_look(&draft, material)?,
-                None => self.bare(&mut draft, mesh.file.span())?,
+                Some(material) => Ok(self.color_look(&draft, material)?),
+                None => Err(self.bare(&mut draft, mesh.file.span())?),
             };
             let path = self.path(&mesh.file)?;
-            let found = obj::load(&path).map_err(|error| self.refuse(mesh.file.span(), SceneProblem::Import(error)))?;
-            found.add_to(&mut draft.scene, look, &path);
+            let added = load_mesh(&path).and_then(|(found, name)| found.add_to(&mut draft.scene, look, &name));
+            added.map_err(|error| self.refuse(mesh.file.span(), SceneProblem::Import(error)))?;
         }
         if draft.scene.is_empty() {
             return Err(self.refuse(0..0, SceneProblem::Empty));
         }
+        if let Some(factor) = self.changes.radius_scale {
+            draft.scene.scale_radii(factor).ok_or_else(|| self.refuse(0..0, SceneProblem::Radii(factor)))?;
+        }
+        if draft.stage {
+            draft.scene.set_stage(self.changes.view);
+        }
+        if !draft.camera_lights.is_empty() {
+            let spot = draft.scene.spot();
+            for (light, at, span) in draft.camera_lights {
+                let position = spot.at(at);
+                if !position.is_finite() {
+                    let found = position.to_string();
+                    return Err(self.refuse(span, SceneProblem::NotFinite { name: "the light's place", found }));
+                }
+                draft.scene.lights[light].position = position;
+            }
+        }
+        draft.scene.background = background.unwrap_or(draft.scene.background);
         Ok(draft.scene)
     }
 
@@ -214,8 +270,23 @@ impl Checker<'_> {
     /// Adds the lights, spheres and triangles of a table to the scene.
     fn elements(&self, table: &SceneTable, draft: &mut Draft<'_>) -> Result<(), SceneError> {
         for light in &table.light {
-            let color = or(light.color.as_ref(), DVec3::ONE, |color| self.color("color", color))?;
-            draft.scene.lights.push(PointLight { position: self.point("position", &light.position)?, color });
+            if draft.stage {
+                return Err(self.refuse(light.span(), SceneProblem::Staged("[[light]]")));
+            }
+            let LightTable { position, camera, color } = light.get_ref();
+            let color = or(color.as_ref(), DVec3::ONE, |color| self.color("color", color))?;
+            let position = match (position, camera) {
+                (Some(position), None) => self.point("position", position)?,
+                (None, Some(camera)) => {
+                    // Placed when all objects are known.
+                    let at = self.point("camera", camera)?;
+                    let span = self.offset + camera.span().start;
+                    draft.camera_lights.push((draft.scene.lights.len(), at, span..span));
+                    DVec3::ZERO
+                }
+                _ => return Err(self.refuse(light.span(), SceneProblem::LightPlace)),
+            };
+            draft.scene.lights.push(PointLight { position, color });
         }
         for sphere in &table.sphere {
             let center = self.point("center", &sphere.center)?;
@@ -286,15 +357,25 @@ impl Checker<'_> {
     }
 
     fn spheres(&self, table: &SpheresTable, draft: &mut Draft<'_>) -> Result<(), SceneError> {
-        let SpheresTable { file, scale, radius, material } = table;
+        let SpheresTable { file, scale, radius, material, frame } = table;
         let look = material.as_ref().map(|material| self.material(draft, material)).transpose()?;
-        let options = xyz::Options {
+        let frame = match frame {
+            None => 1,
+            Some(frame) => {
+                let found = *frame.get_ref();
+                let number = u64::try_from(found).ok().filter(|&number| number > 0);
+                number.ok_or_else(|| self.refuse(frame.span(), SceneProblem::Frame(found)))?
+            }
+        };
+        let options = Options {
+            frame,
             scale: or(scale.as_ref(), 1.0, |scale| self.positive("scale", scale))?,
             radius: radius.as_ref().map(|radius| self.not_negative("radius", radius)).transpose()?,
             colored: look.is_none(),
         };
         let path = self.path(file)?;
-        let added = xyz::load(&path, options).and_then(|found| found.add_to(&mut draft.scene, look, &path));
+        let added = load_spheres(&path, options);
+        let added = added.and_then(|(found, name)| found.add_to(&mut draft.scene, look, &name));
         added.map_err(|error| self.refuse(file.span(), SceneProblem::Import(error)))
     }
 
@@ -418,7 +499,8 @@ mod tests {
     /// What a text becomes if it is parsed as a whole, and if each element is parsed by itself.
     fn both(text: &str) -> [Result<String, String>; 2] {
         [usize::MAX, 1].map(|group| {
-            let checker = Checker { text, name: "a.toml", files: Files::Embedded, offset: 0 };
+            let checker =
+                Checker { text, name: "a.toml", files: Files::Embedded, offset: 0, changes: &Changes::default() };
             checker.scene(group).map(|scene| format!("{scene:?}")).map_err(|error| format!("{error} {error:?}"))
         })
     }

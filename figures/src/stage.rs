@@ -1,39 +1,107 @@
 //! A stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
 
+use std::str::FromStr;
+
 use glam::DVec3;
 use rt_geom::Sphere;
 use rt_shade::PointLight;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, cos_sin};
 use crate::scene::Scene;
+
+/// Where a picture on the stage is taken from, relative to the middle of the objects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    /// From the middle to the eye; a unit vector.
+    pub from: DVec3,
+    /// Upwards in the picture; a unit vector perpendicular to it.
+    pub up: DVec3,
+}
+
+impl Direction {
+    /// The direction that turns about +z by `azimuth`, from +x towards +y, and rises by `elevation`, in degrees; +z, or
+    /// at the poles what goes over into it, is upwards.
+    ///
+    /// `None` if they are not finite, or if the elevation is beyond -90 to 90.
+    pub fn new(azimuth: f64, elevation: f64) -> Option<Self> {
+        if !(azimuth.is_finite() && (-90.0..=90.0).contains(&elevation)) {
+            return None;
+        }
+        let [(cos, sin), (flat, high)] = [azimuth, elevation].map(cos_sin);
+        let [from, up] = [(flat, high), (-high, flat)].map(|(out, z)| DVec3::new(out * cos, out * sin, z));
+        Some(Self { from, up })
+    }
+}
+
+impl FromStr for Direction {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (azimuth, elevation) = match text {
+            "x" => ("0", "0"),
+            "y" => ("90", "0"),
+            // +y is upwards.
+            "z" => ("-90", "90"),
+            // The three axes are equally long: the tangent of the elevation is the square root of one half.
+            "iso" => ("45", "35.264389682754654"),
+            _ => text.split_once(',').ok_or("expected x, y, z, iso, or two angles in degrees, such as 30,20")?,
+        };
+        let angle = |text: &str| text.trim().parse::<f64>().ok();
+        let direction =
+            angle(azimuth).zip(angle(elevation)).and_then(|(azimuth, elevation)| Self::new(azimuth, elevation));
+        direction.ok_or_else(|| "expected a finite angle about z, and one from -90 to 90 above the ground".to_owned())
+    }
+}
+
+/// The middle of a scene, seen from its camera, and its size.
+pub(crate) struct Spot {
+    center: DVec3,
+    /// Half of the diagonal of the box around the objects.
+    radius: f64,
+    axes: [DVec3; 3],
+}
+
+impl Spot {
+    /// The place that lies so many radii to the right, up, and back towards the camera.
+    pub(crate) fn at(&self, place: DVec3) -> DVec3 {
+        let [right, up, forward] = self.axes;
+        self.center + self.radius * (place.x * right + place.y * up - place.z * forward)
+    }
+}
 
 impl Scene {
     /// Sets a stage for objects that come without one: a camera that shows all of them, two lights, a dark background.
     ///
-    /// The camera is [`Camera::stage`]'s, from `FROM`. Objects that lie in one plane which is seen edge-on from there,
-    /// or at a slope below `EDGE_ON`, are seen along the plane's normal, from the front or, where the plane runs from
-    /// front to back, from the right.
-    pub fn set_stage(&mut self) {
+    /// The camera is [`Camera::stage`]'s, from `view` or else from `FROM`, with +y upwards. Objects that lie in one
+    /// plane which is seen edge-on from there, or at a slope below `EDGE_ON`, are then seen along the plane's normal,
+    /// from the front or, where the plane runs from front to back, from the right.
+    pub fn set_stage(&mut self, view: Option<Direction>) {
+        self.background = BACKGROUND;
+        self.camera = match view {
+            Some(Direction { from, up }) => Camera::stage(from, up),
+            None => {
+                let size = 2.0 * self.spot().radius;
+                let normal = self.flat_normal(size);
+                let from = normal.filter(|normal| normal.dot(FROM).abs() < EDGE_ON * FROM.length());
+                // A normal so far from FROM has one of the two components.
+                let from = from.map_or(FROM, |normal| {
+                    let sided = if normal.z.abs() >= EDGE_ON { normal.z } else { normal.x };
+                    normal * sided.signum()
+                });
+                Camera::stage(from, DVec3::Y)
+            }
+        };
+        let spot = self.spot();
+        let lamp = |&(place, color): &(DVec3, DVec3)| PointLight { position: spot.at(place), color };
+        self.lights = LIGHTS.iter().map(lamp).collect();
+    }
+
+    /// The middle of the scene and its size, as the camera sees them.
+    pub(crate) fn spot(&self) -> Spot {
         let (low, high) = self.balls().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
             (low.min(center - radius), high.max(center + radius))
         });
-        let (center, size) = (low.midpoint(high), (high / 2.0 - low / 2.0).length());
-        let from = self
-            .flat_normal(2.0 * size)
-            .filter(|normal| normal.dot(FROM).abs() < EDGE_ON * FROM.length())
-            // A normal so far from FROM has one of the two components.
-            .map_or(FROM, |normal| {
-                let sided = if normal.z.abs() >= EDGE_ON { normal.z } else { normal.x };
-                normal * sided.signum()
-            });
-        self.background = DVec3::new(0.05, 0.06, 0.08);
-        self.camera = Camera::stage(from);
-        let [right, up, forward] = self.camera.axes();
-        let lamp = |[x, y, z]: [f64; 3], color: [f64; 3]| PointLight {
-            position: center + size * (x * right + y * up - z * forward),
-            color: DVec3::from_array(color),
-        };
-        self.lights = vec![lamp([-3.0, 6.0, 9.0], [0.95, 0.94, 0.9]), lamp([8.0, -1.0, 3.0], [0.36, 0.4, 0.48])];
+        Spot { center: low.midpoint(high), radius: (high / 2.0 - low / 2.0).length(), axes: self.camera.axes() }
     }
 
     /// The unit normal, on either side, of the plane that all objects lie in; `None` if there is none, or if they lie
@@ -81,6 +149,15 @@ impl Scene {
 /// cube along the axes shows three sides, 20, 12 and 9 parts of 25 as large as they are.
 const FROM: DVec3 = DVec3::new(12.0, 9.0, 20.0);
 
+/// The colour behind the objects.
+const BACKGROUND: DVec3 = DVec3::new(0.05, 0.06, 0.08);
+
+/// The lights: their places in radii of the scene, to the right, up and back, and their colours.
+const LIGHTS: [(DVec3, DVec3); 2] = [
+    (DVec3::new(-3.0, 6.0, 9.0), DVec3::new(0.95, 0.94, 0.9)),
+    (DVec3::new(8.0, -1.0, 3.0), DVec3::new(0.36, 0.4, 0.48)),
+];
+
 /// A plane of objects that is seen at less than this slope, the sine of 7.2 degrees, is seen along its normal instead.
 const EDGE_ON: f64 = 0.125;
 
@@ -111,7 +188,7 @@ mod tests {
         let triangles = triangles.iter().map(|&[a, b, c]| Triangle::new(a, b, c).unwrap()).collect();
         let spheres = spheres.iter().map(|&(center, radius)| Sphere::new(center, radius).unwrap()).collect();
         let mut scene = Scene { spheres, triangles, ..Scene::default() };
-        scene.set_stage();
+        scene.set_stage(None);
         // The lights turn with the camera: from the second, the first is to the left, above, and farther back.
         let [right, up, forward] = scene.camera.axes();
         let side = scene.lights[0].position - scene.lights[1].position;

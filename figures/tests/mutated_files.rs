@@ -1,6 +1,6 @@
 //! Files with a few bytes changed are read or refused: nothing panics, and what is read keeps its promises.
 
-use figures::import::xyz::Options;
+use figures::import::spheres::Options;
 use figures::import::{obj, xyz};
 use figures::scene_file;
 use proptest::prelude::*;
@@ -71,7 +71,7 @@ proptest! {
 
     #[test]
     fn a_mutated_mesh_is_read_or_refused(bytes in mutated(&MESHES)) {
-        match obj::read(&bytes[..], "mesh.obj") {
+        match obj::read(&bytes[..], "mesh.obj", None) {
             Ok(mesh) => {
                 prop_assert_eq!(mesh.triangles.len(), mesh.vertex_colors.len());
                 prop_assert!(mesh.triangles.iter().all(|triangle| !triangle.is_degenerate()));

@@ -65,7 +65,7 @@ proptest! {
     #[test]
     fn tobj_reads_the_same_triangles(text in mesh()) {
         let expected = second_opinion(&text);
-        match obj::read(text.as_bytes(), "mesh.obj") {
+        match obj::read(text.as_bytes(), "mesh.obj", None) {
             Ok(mesh) => {
                 let found: Vec<_> = mesh.triangles.into_iter().zip(mesh.vertex_colors).collect();
                 prop_assert_eq!(found, expected);

@@ -77,7 +77,7 @@ pub(crate) fn find(name: &[u8]) -> Option<ElementName> {
 const HEAVIEST: u8 = 92;
 
 /// Whether two letters look like a position in a protein.
-fn is_position(letters: &[u8]) -> bool {
+pub(super) fn is_position(letters: &[u8]) -> bool {
     let [first, second] = letters else { return false };
     match first.to_ascii_uppercase() {
         b'H' => true,

@@ -1,106 +1,91 @@
-//! Files in formats that are not read, known by how they begin or by the ending of their name, so that they are refused
-//! by their own name and not as broken TOML.
+//! What a file is by how it begins, or by the ending of its name: so that a format that is read is known without an
+//! ending, and one that is not read is refused by its own name and not as broken TOML.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
-use super::problem::{FileProblem, ImportError};
-use crate::text::file_name;
+use super::source::Format;
+use super::stl;
 
-/// Refuses a file that cannot be read by its ending: by what it holds, else by the ending, else for having none.
-pub(super) fn refused(path: &Path) -> ImportError {
-    let ending = ending(path);
-    let what = match (known(path), ending.as_str()) {
-        (Some(format), _) => format!("{format} is not read"),
-        (None, "") => "its name has no ending that says what it is".to_owned(),
-        (None, ending) => format!("files that end in .{ending} are not read"),
-    };
-    FileProblem::Foreign { path: file_name(path), what }.into()
-}
-
-/// Returns the error of a reader that has failed on the file at `path` or, if the file begins as another format does,
-/// one that names this format.
-pub(super) fn explained(error: ImportError, path: &Path) -> ImportError {
-    if !error.is_of_content() {
-        return error;
-    }
-    match start(path).and_then(|start| begins_as(&start)) {
-        None => error,
-        Some(format) => {
-            let what = format!("it holds {format}, which is not read");
-            FileProblem::Foreign { path: file_name(path), what }.into()
-        }
-    }
+/// What a file is, by how it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Known {
+    /// A format that is read.
+    Read(Format),
+    /// The name of another.
+    Foreign(&'static str),
 }
 
 /// The ending of a file's name in lower case; empty if it is long or has other characters than letters and digits.
-fn ending(path: &Path) -> String {
+pub(super) fn ending(path: &Path) -> String {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
     let harmless = ending.len() <= 12 && ending.chars().all(|c| c.is_ascii_alphanumeric());
     if harmless { ending.to_ascii_lowercase() } else { String::new() }
 }
 
-/// The format of a file, by what it holds or by its name.
-fn known(path: &Path) -> Option<&'static str> {
-    let ending = ending(path);
-    let by_ending = || {
-        let format = ENDINGS.iter().find(|(_, endings)| endings.contains(&ending.as_str()));
-        format.map(|(format, _)| *format)
-    };
-    start(path).and_then(|start| begins_as(&start)).or_else(by_ending)
-}
-
-/// The first bytes of a plain file; not of a pipe, which can be read only once.
-fn start(path: &Path) -> Option<Vec<u8>> {
-    if !path.metadata().ok()?.is_file() {
-        return None;
-    }
-    let mut start = Vec::new();
-    File::open(path).ok()?.take(1024).read_to_end(&mut start).ok()?;
-    Some(start)
+/// The format, not read, of files with such an ending.
+pub(super) fn of_ending(ending: &str) -> Option<&'static str> {
+    ENDINGS.iter().find(|(_, endings)| endings.contains(&ending)).map(|(format, _)| *format)
 }
 
 /// The format that starts with these bytes.
-fn begins_as(start: &[u8]) -> Option<&'static str> {
+pub(super) fn begins_as(start: &[u8]) -> Option<Known> {
     let magic = MAGIC.iter().find(|(magic, _)| start.starts_with(magic));
     if let Some((_, format)) = magic {
-        return Some(format);
+        return Some(Known::Foreign(format));
     }
+    // Text may be cut within a line.
     let text = String::from_utf8_lossy(start);
     let text = text.trim_start_matches('\u{feff}');
     let mut lines = text.lines().map(str::trim_end);
-    let (first, second) = (lines.next().unwrap_or(""), lines.next().unwrap_or(""));
-    let fourth = lines.nth(1).unwrap_or("");
+    let (first, third) = (lines.next().unwrap_or(""), lines.nth(1).unwrap_or(""));
+    let fourth = lines.next().unwrap_or("");
     let word = first.split_whitespace().next().unwrap_or("");
     match word {
-        "ply" => return Some("PLY"),
-        "solid" if second.trim_start().starts_with("facet") || second.trim_start().starts_with("endsolid") => {
-            return Some("STL");
-        }
+        "ply" if first == word => return Some(Known::Read(Format::Ply)),
         "HEADER" | "REMARK" | "CRYST1" | "COMPND" | "HETATM" | "ATOM" | "MODEL" | "TITLE" | "AUTHOR"
             if first.len() > word.len() && !first.contains('=') =>
         {
-            return Some("PDB");
+            return Some(Known::Read(Format::Pdb));
         }
-        "OFF" | "COFF" | "NOFF" if first == word => return Some("OFF"),
-        _ if word.starts_with("data_") && word.len() > 5 => return Some("CIF"),
-        "ITEM:" => return Some("a LAMMPS dump"),
-        _ if first.contains("LAMMPS") && !first.starts_with('#') => return Some("LAMMPS data"),
-        _ if first.starts_with("@<TRIPOS>") => return Some("MOL2"),
-        _ if fourth.ends_with("V2000") || fourth.ends_with("V3000") => return Some("MOL or SDF"),
-        "<?xml" | "<svg" | "<html" | "<!DOCTYPE" => return Some("XML or HTML"),
-        _ if first == "{" || first.starts_with("{\"") => return Some("JSON (as glTF is)"),
+        "OFF" | "COFF" | "NOFF" if first == word => return Some(Known::Foreign("OFF")),
+        _ if word.starts_with("data_") && word.len() > 5 => return Some(Known::Foreign("CIF")),
+        "ITEM:" => return Some(Known::Foreign("a LAMMPS dump")),
+        _ if first.contains("LAMMPS") && !first.starts_with('#') => return Some(Known::Foreign("LAMMPS data")),
+        _ if first.starts_with("@<TRIPOS>") => return Some(Known::Foreign("MOL2")),
+        _ if fourth.ends_with("V2000") || fourth.ends_with("V3000") => return Some(Known::Foreign("MOL or SDF")),
+        "<?xml" | "<svg" | "<html" | "<!DOCTYPE" => return Some(Known::Foreign("XML or HTML")),
+        _ if first == "{" || first.starts_with("{\"") => return Some(Known::Foreign("JSON (as glTF is)")),
         _ => {}
     }
-    // A binary STL has no magic number: 80 bytes of any kind, a count, and 50 bytes for each triangle.
-    let binary = start.len() > 84 && start[..84].contains(&0);
-    binary.then_some("binary data")
+    let (head, more) = start.split_at(start.len().min(84));
+    if stl::is_text(head, more) && !first.contains('=') {
+        return Some(Known::Read(Format::Stl));
+    }
+    if start.contains(&0) {
+        let stl = stl::can_be_binary(start);
+        return Some(if stl { Known::Read(Format::Stl) } else { Known::Foreign("binary data") });
+    }
+    // A count, a comment, and a line that begins with a word and three numbers.
+    let mut words = third.split_whitespace().skip(1);
+    if first.trim().parse::<u64>().is_ok()
+        && words.by_ref().take(3).filter(|word| word.parse::<f64>().is_ok()).count() == 3
+    {
+        return Some(Known::Read(Format::Xyz));
+    }
+    // Of the first lines that have a keyword each is one of a mesh's, or of a scene's.
+    let keywords = text.lines().filter_map(|line| line.split_whitespace().next()).filter(|word| !word.starts_with('#'));
+    let mut keywords = keywords.take(4).peekable();
+    keywords.peek()?;
+    if keywords.all(|word| ["v", "vn", "vt", "o", "g", "s", "mtllib", "usemtl", "f"].contains(&word)) {
+        return Some(Known::Read(Format::Obj));
+    }
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let is_scene = lines.next().is_some_and(|line| line.starts_with('[') || line.contains('='));
+    is_scene.then_some(Known::Read(Format::Scene))
 }
 
 /// Formats with a known beginning.
-const MAGIC: [(&[u8], &str); 21] = [
-    (b"\x1f\x8b", "gzip data"),
+const MAGIC: [(&[u8], &str); 20] = [
     (b"BZh", "bzip2 data"),
     (b"\xfd7zXZ", "xz data"),
     (b"\x28\xb5\x2f\xfd", "Zstandard data"),
@@ -124,13 +109,11 @@ const MAGIC: [(&[u8], &str); 21] = [
 ];
 
 /// Formats with a known ending.
-const ENDINGS: [(&str, &[&str]); 24] = [
-    ("PDB", &["pdb", "ent", "pdbqt", "pqr"]),
+const ENDINGS: [(&str, &[&str]); 22] = [
+    ("PDBQT or PQR", &["pdbqt", "pqr"]),
     ("mmCIF", &["cif", "mmcif", "mcif", "bcif"]),
     ("a LAMMPS dump", &["lammpstrj", "dump"]),
     ("LAMMPS data", &["lmp", "lammps", "lmpdat"]),
-    ("STL", &["stl"]),
-    ("PLY", &["ply"]),
     ("glTF", &["gltf", "glb"]),
     ("OFF", &["off"]),
     ("MOL or SDF", &["mol", "sdf", "sd"]),
@@ -148,5 +131,5 @@ const ENDINGS: [(&str, &[&str]); 24] = [
     ("an OBJ material library", &["mtl"]),
     ("JSON", &["json"]),
     ("YAML", &["yaml", "yml"]),
-    ("a compressed file", &["gz", "bz2", "xz", "zst", "zip", "7z", "z", "lz4"]),
+    ("a compressed file", &["bz2", "xz", "zst", "zip", "7z", "z", "lz4"]),
 ];

@@ -3,41 +3,24 @@
 //! Read are vertices, `v x y z` or `v x y z r g b`, and faces, `f 1 2 3`, which count vertices from 1 or, negative,
 //! back from the last above; of `1/2/3` the first number counts. A face may name vertices that come later. `polygon.rs`
 //! cuts faces of more than three vertices. A line that ends in `\` goes on in the next one, unless it has a comment.
-//! Everything else (texture coordinates, normals, materials, lines, points) is ignored, and the mesh lists what it was:
+//! Materials, `mtllib` and `usemtl`, give faces the diffuse colour of the library, which lies beside the file; `mtl.rs`
+//! reads it. Everything else (texture coordinates, normals, lines, points) is ignored, and the mesh lists what it was:
 //! the scene model has no use for it.
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::collections::HashMap;
+use std::io::{self, BufRead, Read};
 use std::path::Path;
 
 use glam::DVec3;
-use rt_geom::Triangle;
 
-use super::foreign;
-use super::polygon::{Cutter, Outcome};
+use super::mesh::{FaceColor, Faces, Mesh, NO_MATERIAL, Vertex};
+use super::mtl::Library;
 use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
 use super::words::{Words, number, shown};
-use crate::scene::{LookIndex, Scene};
-use crate::text::{file_name, without_mark};
-
-/// The triangles of a mesh.
-#[derive(Debug, Default, PartialEq)]
-pub struct Mesh {
-    /// The triangles that have an area, in the file's order.
-    pub triangles: Vec<Triangle>,
-    /// For each of them the colours at its vertices, if all three have one.
-    pub vertex_colors: Vec<Option<[DVec3; 3]>>,
-    /// How many triangles without area were left out.
-    pub flat: usize,
-    /// How many faces cross themselves, so that their triangles may overlap.
-    pub crossed: usize,
-    /// What the file has that a mesh has not, such as `normals (vn)`.
-    pub passed_over: Vec<&'static str>,
-}
+use crate::text::{quoted, without_mark};
 
 /// What is ignored, with its keywords.
-const PASSED_OVER: [(&str, &[&str]); 6] = [
-    ("materials (mtllib, usemtl)", &["mtllib", "usemtl"]),
+const PASSED_OVER: [(&str, &[&str]); 5] = [
     ("normals (vn)", &["vn"]),
     ("texture coordinates (vt)", &["vt"]),
     ("lines (l)", &["l"]),
@@ -45,22 +28,13 @@ const PASSED_OVER: [(&str, &[&str]); 6] = [
     ("curves and surfaces (curv, curv2, surf)", &["curv", "curv2", "surf"]),
 ];
 
-/// Reads the mesh in the file at `path`.
+/// Reads a mesh from `source`, which errors call `name`; its material libraries are looked up in `folder`, if there is
+/// one.
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn load(path: &Path) -> Result<Mesh, ImportError> {
-    let name = file_name(path);
-    let file = File::open(path).map_err(|source| FileProblem::Read { path: name.clone(), source })?;
-    read(BufReader::new(file), &name).map_err(|error| foreign::explained(error, path))
-}
-
-/// Reads a mesh from `source`, which errors call `name`.
-///
-/// # Errors
-/// What is wrong, with the line.
-pub fn read(mut source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
-    let mut reader = Reader::default();
+pub fn read(mut source: impl BufRead, name: &str, folder: Option<&Path>) -> Result<Mesh, ImportError> {
+    let mut reader = Reader::new();
     let mut bytes = Vec::new();
     let mut line = 0;
     let path = || name.to_owned();
@@ -73,12 +47,8 @@ pub fn read(mut source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
         let done = if complete { reader.statement(&bytes, first) } else { Err(LineProblem::Long) };
         done.map_err(|problem| ImportError::in_line(name, first, problem))?;
     }
-    let mesh = reader.finish().map_err(|(line, problem)| ImportError::in_line(name, line, problem))?;
-    match (mesh.triangles.len(), mesh.flat) {
-        (0, 0) => Err(FileProblem::NoFaces(path()).into()),
-        (0, flat) => Err(FileProblem::Flat { path: path(), flat }.into()),
-        _ => Ok(mesh),
-    }
+    let mesh = reader.finish(folder).map_err(|(line, problem)| ImportError::in_line(name, line, problem))?;
+    mesh.some(name)
 }
 
 /// Reads a line and those that continue it, at most [`LONGEST_LINE`] bytes in all, and counts them; false at the end.
@@ -104,26 +74,42 @@ fn statement(source: &mut impl BufRead, bytes: &mut Vec<u8>, line: &mut usize) -
     }
 }
 
-/// A vertex, and its colour if it has one.
-type Vertex = (DVec3, Option<DVec3>);
-
 /// A mesh that is being read.
-#[derive(Default)]
 struct Reader {
     mesh: Mesh,
     vertices: Vec<Vertex>,
     /// Bit `k` is set if `PASSED_OVER[k]` occurs.
     passed_over: u32,
-    /// The faces from the first one on that names a vertex that comes later: their lines, and where their corners end.
-    later: Vec<(usize, usize)>,
+    /// The faces from the first one on that names a vertex that comes later: their lines, where their corners end, and
+    /// their colours.
+    later: Vec<(usize, usize, FaceColor)>,
     /// The corners of those faces.
     later_corners: Vec<usize>,
     faces: Faces,
     /// A place to read a face's corners into.
     corners: Vec<usize>,
+    /// The libraries that the file names, and the materials, each once.
+    libraries: Vec<Vec<u8>>,
+    materials: HashMap<Vec<u8>, u32>,
+    color: FaceColor,
 }
 
 impl Reader {
+    fn new() -> Self {
+        Self {
+            mesh: Mesh::default(),
+            vertices: Vec::new(),
+            passed_over: 0,
+            later: Vec::new(),
+            later_corners: Vec::new(),
+            faces: Faces::default(),
+            corners: Vec::new(),
+            libraries: Vec::new(),
+            materials: HashMap::new(),
+            color: FaceColor::Unsaid,
+        }
+    }
+
     /// Reads what begins in this line.
     fn statement(&mut self, bytes: &[u8], line: usize) -> Result<(), LineProblem> {
         let bytes = if line == 1 { without_mark(bytes)? } else { bytes };
@@ -142,6 +128,12 @@ impl Reader {
                 }
                 self.face(line)?;
             }
+            b"mtllib" if self.libraries.len() < MOST_LIBRARIES => self.libraries.push(rest(bytes, keyword).to_vec()),
+            b"usemtl" => {
+                let next = u32::try_from(self.materials.len()).map_err(|_| LineProblem::MeshMemory)?;
+                let material = *self.materials.entry(rest(bytes, keyword).to_vec()).or_insert(next);
+                self.color = FaceColor::Material(material);
+            }
             _ => {
                 let known = |(_, keywords): &(_, &[&str])| keywords.iter().any(|word| word.as_bytes() == keyword);
                 if let Some(at) = PASSED_OVER.iter().position(known) {
@@ -159,101 +151,82 @@ impl Reader {
             return Err(LineProblem::Face(self.corners.len()));
         }
         if self.later.is_empty() && self.corners.iter().all(|&corner| corner < known) {
-            return self.faces.add(&mut self.mesh, &self.corners, &self.vertices);
+            return self.faces.add(&mut self.mesh, &self.corners, &self.vertices, self.color);
         }
         self.later.try_reserve(1).map_err(|_| LineProblem::MeshMemory)?;
         self.later_corners.try_reserve(self.corners.len()).map_err(|_| LineProblem::MeshMemory)?;
         self.later_corners.extend_from_slice(&self.corners);
-        self.later.push((line, self.later_corners.len()));
+        self.later.push((line, self.later_corners.len(), self.color));
         Ok(())
     }
 
     /// Cuts the faces that were kept; an error comes with its line.
-    fn finish(mut self) -> Result<Mesh, (usize, LineProblem)> {
+    fn finish(mut self, folder: Option<&Path>) -> Result<Mesh, (usize, LineProblem)> {
         let mut start = 0;
-        for &(line, end) in &self.later {
+        for &(line, end, color) in &self.later {
             let corners = &self.later_corners[start..end];
             if let Some(&corner) = corners.iter().find(|&&corner| corner >= self.vertices.len()) {
                 let missing = LineProblem::Missing { number: corner + 1, vertices: self.vertices.len() };
                 return Err((line, missing));
             }
-            let added = self.faces.add(&mut self.mesh, corners, &self.vertices);
+            let added = self.faces.add(&mut self.mesh, corners, &self.vertices, color);
             added.map_err(|problem| (line, problem))?;
             start = end;
         }
         let occurs = |at: &usize| self.passed_over & 1 << at != 0;
         self.mesh.passed_over = (0..PASSED_OVER.len()).filter(occurs).map(|at| PASSED_OVER[at].0).collect();
+        if !self.materials.is_empty() {
+            self.paint(folder);
+        }
         Ok(self.mesh)
     }
-}
 
-/// What turns faces into triangles, with places to work in.
-#[derive(Default)]
-struct Faces {
-    cutter: Cutter,
-    points: Vec<DVec3>,
-    cuts: Vec<[u32; 3]>,
-}
-
-impl Faces {
-    /// Adds the triangles of a face, which has at least three corners, all of them known.
-    fn add(&mut self, mesh: &mut Mesh, corners: &[usize], vertices: &[Vertex]) -> Result<(), LineProblem> {
-        let most = corners.len() - 2;
-        mesh.triangles.try_reserve(most).map_err(|_| LineProblem::MeshMemory)?;
-        mesh.vertex_colors.try_reserve(most).map_err(|_| LineProblem::MeshMemory)?;
-        let before = mesh.triangles.len();
-        if let &[a, b, c] = corners {
-            mesh.push([a, b, c].map(|corner| vertices[corner]));
-        } else {
-            self.points.clear();
-            self.points.extend(corners.iter().map(|&corner| vertices[corner].0));
-            self.cuts.clear();
-            match self.cutter.cut(&self.points, &mut self.cuts) {
-                Outcome::Exact => {}
-                Outcome::Crossed => mesh.crossed += 1,
-                Outcome::TooLarge => return Err(LineProblem::LargeFace(corners.len())),
-            }
-            for cut in &self.cuts {
-                mesh.push(cut.map(|at| vertices[corners[at as usize]]));
+    /// Gives the materials that faces name their colours. One that no library has is none.
+    fn paint(&mut self, folder: Option<&Path>) {
+        let mut library = Library::default();
+        match folder {
+            Some(folder) => self.libraries.iter().for_each(|name| library.add(name, folder, &mut self.mesh.notes)),
+            None => self.mesh.passed_over.push("materials (mtllib, usemtl): they lie in another file"),
+        }
+        if library.has_maps {
+            self.mesh.passed_over.push("texture maps (map_Kd)");
+        }
+        let mut positions = vec![NO_MATERIAL; self.materials.len()];
+        let (mut missing, mut first) = (0, None);
+        let mut names: Vec<(&Vec<u8>, &u32)> = self.materials.iter().collect();
+        names.sort_by_key(|(_, material)| **material);
+        for (name, &material) in names {
+            match library.colors.get(name) {
+                Some(&color) => {
+                    positions[material as usize] = u32::try_from(self.mesh.materials.len()).unwrap_or(NO_MATERIAL);
+                    self.mesh.materials.push(color);
+                }
+                None => {
+                    missing += 1;
+                    first = first.or(Some(name));
+                }
             }
         }
-        mesh.flat += most - (mesh.triangles.len() - before);
-        Ok(())
+        if let (Some(first), Some(_)) = (first, folder) {
+            let more = if missing > 1 { format!(" and {} more", missing - 1) } else { String::new() };
+            let first = quoted(&String::from_utf8_lossy(first));
+            self.mesh.notes.push(format!("no color is known of material {first}{more}"));
+        }
+        if self.mesh.materials.is_empty() {
+            self.mesh.material_of.clear();
+        }
+        for material in &mut self.mesh.material_of {
+            *material = positions.get(*material as usize).copied().unwrap_or(NO_MATERIAL);
+        }
     }
 }
 
-impl Mesh {
-    /// Adds the mesh, read from the file at `path`, to a scene, with this look.
-    pub fn add_to(self, scene: &mut Scene, look: LookIndex, path: &Path) {
-        let Self { triangles, vertex_colors, flat, crossed, passed_over } = self;
-        let mut warn = |warning: String| scene.warnings.push(format!("{}: {warning}", file_name(path)));
-        if flat > 0 {
-            let triangles = if flat == 1 { "triangle" } else { "triangles" };
-            warn(format!("left out {flat} {triangles} without area"));
-        }
-        if crossed > 0 {
-            let faces = if crossed == 1 { "face crosses itself" } else { "faces cross themselves" };
-            warn(format!("{crossed} {faces}; the triangles of such a face may overlap"));
-        }
-        if !passed_over.is_empty() {
-            warn(format!("passed over: {}", passed_over.join(", ")));
-        }
-        scene.triangle_looks.resize(scene.triangle_looks.len() + triangles.len(), look);
-        if vertex_colors.iter().any(Option::is_some) || !scene.vertex_colors.is_empty() {
-            scene.vertex_colors.resize(scene.triangles.len(), None);
-            scene.vertex_colors.extend(vertex_colors);
-        }
-        scene.triangles.extend(triangles);
-    }
+/// More material libraries than this are not read.
+const MOST_LIBRARIES: usize = 64;
 
-    /// Adds a triangle if it has an area.
-    fn push(&mut self, [a, b, c]: [Vertex; 3]) {
-        let triangle = Triangle::new(a.0, b.0, c.0).expect("vertices were checked when they were read");
-        if !triangle.is_degenerate() {
-            self.triangles.push(triangle);
-            self.vertex_colors.push(a.1.zip(b.1).zip(c.1).map(|((a, b), c)| [a, b, c]));
-        }
-    }
+/// What follows the keyword in a line: a name, which may have spaces in it.
+pub(super) fn rest<'a>(line: &'a [u8], keyword: &[u8]) -> &'a [u8] {
+    line.trim_ascii_start().get(keyword.len()..).unwrap_or_default().trim_ascii()
 }
 
 /// Reads a vertex.
@@ -297,10 +270,12 @@ fn position(word: &[u8], vertices: usize) -> Result<usize, LineProblem> {
 
 #[cfg(test)]
 mod tests {
+    use rt_geom::Triangle;
+
     use super::*;
 
     fn parse(text: &str) -> Result<Mesh, ImportError> {
-        read(text.as_bytes(), "mesh.obj")
+        read(text.as_bytes(), "mesh.obj", None)
     }
 
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -367,7 +342,7 @@ mod tests {
     fn a_byte_order_mark_is_passed_over() {
         let expected = parse(&format!("{SQUARE}f 1 2 3\n")).unwrap();
         assert_eq!(parse(&format!("\u{feff}{SQUARE}f 1 2 3\n")).unwrap(), expected);
-        let error = read(&b"\xff\xfev\0 \0"[..], "mesh.obj").unwrap_err();
+        let error = read(&b"\xff\xfev\0 \0"[..], "mesh.obj", None).unwrap_err();
         assert_eq!(error.to_string(), "mesh.obj:1: UTF-16 text; save it as UTF-8");
     }
 
@@ -377,7 +352,12 @@ mod tests {
         let mesh = parse(&format!("{SQUARE}{text}f 1 2 3\n")).unwrap();
         assert_eq!(
             mesh.passed_over,
-            ["materials (mtllib, usemtl)", "normals (vn)", "texture coordinates (vt)", "lines (l)"]
+            [
+                "normals (vn)",
+                "texture coordinates (vt)",
+                "lines (l)",
+                "materials (mtllib, usemtl): they lie in another file"
+            ]
         );
         assert!(parse(&format!("{SQUARE}f 1 2 3\n")).unwrap().passed_over.is_empty());
     }

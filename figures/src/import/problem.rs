@@ -41,14 +41,18 @@ pub(super) enum FileProblem {
     Line { path: String, line: usize, problem: LineProblem },
     #[error("{0}: no objects")]
     NoSpheres(String),
-    #[error("{0}: no faces; a mesh has lines such as f 1 2 3")]
+    #[error("{0}: no faces")]
     NoFaces(String),
     #[error("{path}: none of its {flat} triangles has an area: the vertices of each lie on one line")]
     Flat { path: String, flat: usize },
     #[error("more than {} colors; give the spheres a material", LookIndex::MOST)]
     TooManyColors,
-    #[error("{path}: {what}; a scene is a .toml file, a file of spheres .xyz or .extxyz, a mesh .obj")]
+    #[error("{path}: {what}; read are .toml (a scene), .xyz and .pdb (spheres), .obj, .ply and .stl (meshes)")]
     Foreign { path: String, what: String },
+    #[error("{path}: {what}")]
+    Misplaced { path: String, what: String },
+    #[error("{path}: {what}")]
+    Binary { path: String, what: String },
 }
 
 /// What is wrong with a line.
@@ -58,6 +62,8 @@ pub(super) enum LineProblem {
     Number(String),
     #[error("a line is longer than {} MiB", LONGEST_LINE >> 20)]
     Long,
+    #[error("a line is longer than 65535 bytes")]
+    LongRecord,
     #[error(transparent)]
     Utf16(#[from] Utf16),
 
@@ -85,6 +91,11 @@ pub(super) enum LineProblem {
     #[error("not enough memory for {0} atoms")]
     SphereMemory(u64),
 
+    #[error("there is no frame {frame}; the file has {found}")]
+    Frames { frame: u64, found: u64 },
+    #[error("expected a number in columns {first} to {}, found {found:?}", first + 7)]
+    Columns8 { first: usize, found: String },
+
     // Meshes.
     #[error("a vertex has 3 coordinates, and 3 colors or none; found {0} numbers")]
     Vertex(usize),
@@ -100,6 +111,14 @@ pub(super) enum LineProblem {
     Missing { number: usize, vertices: usize },
     #[error("a face with a notch or a corner on a side has at most {MOST_CORNERS} vertices, found {0}")]
     LargeFace(usize),
+    #[error("a vertex of a facet has 3 coordinates, found {0}")]
+    Corner(usize),
+    #[error("a facet has 3 vertices, found {0}")]
+    Loop(usize),
+    #[error("expected facet, outer, vertex or the end of one, found {0:?}")]
+    StlKeyword(String),
+    #[error("{0}")]
+    Ply(String),
     #[error("not enough memory for the mesh")]
     MeshMemory,
 }

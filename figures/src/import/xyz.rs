@@ -3,74 +3,30 @@
 //! A file is a line with the number of atoms, a line of comment, then a line for each atom. In a plain file that is
 //! `element x y z`, and the rest of the line is ignored. In an extended one the comment has
 //! `Properties=name:type:columns` groups, joined by colons, that say what the columns are; of these `species`, `pos`,
-//! `radius` and `color` are read (`element`, `type` and capitals will do too). Only the first frame counts; a warning
-//! says what follows it. Empty lines may stand before it. `elements.rs` has the rule for names that are not symbols.
+//! `radius` and `color` are read (`element`, `type` and capitals will do too). One frame of several is read, the first
+//! unless another is asked for; a note says what follows it. Empty lines may stand before a frame. `elements.rs` has the
+//! rule for names that are not symbols.
 //!
 //! The file streams through a buffer of a few megabytes. Each filling ends at a line's end, is cut into pieces at
 //! lines' ends, and the pieces are read in parallel; what they hold is appended in order. So memory is the spheres and
 //! the buffer, and the result does not depend on threads.
 
-use std::collections::HashMap;
-use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
 
 use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::Sphere;
 
 use super::elements::{self, ElementName};
-use super::foreign;
 use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
+use super::spheres::{AtomColor, Names, Options, Palette, Spheres};
 use super::words::{Words, number, shown};
-use crate::scene::{LookIndex, Scene};
-use crate::text::{file_name, quoted, without_mark};
+use crate::text::without_mark;
 
 /// The size of the buffer.
 const BUFFER: usize = LONGEST_LINE;
 /// Fewer bytes than this are not worth a thread.
 const PIECE: usize = 64 << 10;
-
-/// How a file's spheres are taken.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Positions and radii are multiplied by this; finite and more than 0.
-    pub scale: f64,
-    /// The radius of spheres without a radius column, in place of their elements' radii; before scaling.
-    pub radius: Option<f64>,
-    /// Whether colours are wanted; if not, all spheres have the same.
-    pub colored: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { scale: 1.0, radius: None, colored: true }
-    }
-}
-
-/// The spheres of a file, each with its colour.
-#[derive(Debug, Default)]
-pub struct Spheres {
-    /// The spheres, in the file's order.
-    pub spheres: Vec<Sphere>,
-    /// For each sphere, the position of its colour in `colors`.
-    pub color_indices: Vec<u32>,
-    /// The colours that occur, in order of appearance: each once, unless there are more than 65,536.
-    pub colors: Vec<DVec3>,
-    /// Warnings: names that are not symbols, and what follows the first frame.
-    pub notes: Vec<String>,
-}
-
-/// Reads the file at `path`.
-///
-/// # Errors
-/// What is wrong, with the line.
-pub fn load(path: &Path, options: Options) -> Result<Spheres, ImportError> {
-    let name = file_name(path);
-    let file = File::open(path).map_err(|source| FileProblem::Read { path: name.clone(), source })?;
-    let length = file.metadata().map_or(0, |metadata| metadata.len());
-    read(file, length, &name, options).map_err(|error| foreign::explained(error, path))
-}
 
 /// Reads spheres from `source`, which errors call `name` and which has about `length` bytes (0: unknown).
 ///
@@ -83,32 +39,6 @@ pub fn read(source: impl Read, length: u64, name: &str, options: Options) -> Res
         Broken::Read(source) => FileProblem::Read { path: name.to_owned(), source }.into(),
         Broken::Line(problem) => ImportError::in_line(name, line, problem),
     })
-}
-
-impl Spheres {
-    /// Adds the spheres, read from the file at `path`, to a scene: all with one look, or each in its own colour.
-    ///
-    /// # Errors
-    /// More colours than can be numbered; the spheres are not added then.
-    pub fn add_to(self, scene: &mut Scene, look: Option<LookIndex>, path: &Path) -> Result<(), ImportError> {
-        let Self { spheres, color_indices, colors, notes } = self;
-        scene.warnings.extend(notes.into_iter().map(|note| format!("{}: {note}", file_name(path))));
-        let first = scene.colors.len();
-        let own = |index: u32| LookIndex::color(first + index as usize);
-        let looks: Option<Vec<_>> = color_indices.into_iter().map(|index| look.or_else(|| own(index))).collect();
-        let looks = looks.ok_or(FileProblem::TooManyColors)?;
-        if look.is_none() {
-            append(&mut scene.colors, colors);
-        }
-        append(&mut scene.spheres, spheres);
-        append(&mut scene.sphere_looks, looks);
-        Ok(())
-    }
-}
-
-/// Adds a list to another, without a copy if that one is empty.
-fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
-    if list.is_empty() { *list = more } else { list.extend(more) }
 }
 
 /// Why reading ended early.
@@ -132,13 +62,33 @@ fn read_lines(
 ) -> Result<Spheres, Broken> {
     *line = 1;
     let mut header = without_mark(blocks.line()?).map_err(LineProblem::Utf16)?.to_vec();
-    while header.trim_ascii().is_empty() && !blocks.is_empty()? {
+    let mut frame = 1;
+    let (expected, comment) = loop {
+        while header.trim_ascii().is_empty() && !blocks.is_empty()? {
+            *line += 1;
+            header = blocks.line()?.to_vec();
+        }
+        if frame > 1 && header.trim_ascii().is_empty() {
+            return Err(LineProblem::Frames { frame: options.frame, found: frame - 1 }.into());
+        }
+        let expected = text(&header).parse::<u64>().map_err(|_| LineProblem::Count(shown(&header)))?;
+        *line += 1;
+        let comment = String::from_utf8_lossy(blocks.line()?).into_owned();
+        if frame == options.frame {
+            break (expected, comment);
+        }
+        for found in 0..expected {
+            if blocks.is_empty()? {
+                return Err(LineProblem::Short { expected, found }.into());
+            }
+            *line += 1;
+            blocks.line()?;
+        }
+        frame += 1;
         *line += 1;
         header = blocks.line()?.to_vec();
-    }
-    let expected = text(&header).parse::<u64>().map_err(|_| LineProblem::Count(shown(&header)))?;
-    *line += 1;
-    let layout = Columns::of(&String::from_utf8_lossy(blocks.line()?), options)?;
+    };
+    let layout = Columns::of(&comment, options)?;
 
     let mut found = Spheres::default();
     let no_memory = |_| LineProblem::SphereMemory(expected);
@@ -176,34 +126,8 @@ fn read_lines(
         blocks.start -= behind;
     }
     found.notes.extend(names.note());
-    found.notes.extend(blocks.what_follows(*line)?);
+    found.notes.extend(blocks.what_follows(*line, options.frame)?);
     Ok(found)
-}
-
-/// Names that are no plain symbols, each once, with what they were taken for: some of them.
-#[derive(Default)]
-struct Names(Vec<(Vec<u8>, u8)>);
-
-impl Names {
-    /// How many are listed.
-    const TOLD: usize = 8;
-
-    /// Remembers a name. One more than is listed is enough, here and in each piece of a file, so that the list does not
-    /// depend on how the file is cut.
-    fn add(&mut self, name: &[u8], element: u8) {
-        if self.0.len() <= Self::TOLD && !self.0.iter().any(|(known, _)| known == name) {
-            self.0.push((name.to_vec(), element));
-        }
-    }
-
-    fn note(&self) -> Option<String> {
-        let told = self.0.iter().take(Self::TOLD).map(|(name, element)| {
-            format!("{} as {}", quoted(&String::from_utf8_lossy(name)), elements::symbol(*element))
-        });
-        let told = told.collect::<Vec<_>>().join(", ");
-        let more = if self.0.len() > Self::TOLD { " and more" } else { "" };
-        (!told.is_empty()).then(|| format!("names are read by their letters: {told}{more}"))
-    }
 }
 
 /// Cuts a block of whole lines into pieces of whole lines, at most `lines` lines in all.
@@ -294,7 +218,7 @@ impl<R: Read> LineBlocks<R> {
     }
 
     /// Says what follows the last atom, if it is more than space; `line` is the next one's number.
-    fn what_follows(&mut self, mut line: usize) -> Result<Option<String>, Broken> {
+    fn what_follows(&mut self, mut line: usize, frame: u64) -> Result<Option<String>, Broken> {
         while !self.is_empty()? {
             let found = match self.line() {
                 Ok(found) => found.trim_ascii(),
@@ -304,68 +228,13 @@ impl<R: Read> LineBlocks<R> {
             };
             if !found.is_empty() {
                 return Ok(Some(match text(found).parse::<u64>() {
-                    Ok(_) => format!("only the first frame is drawn; another one follows in line {line}"),
+                    Ok(_) => format!("frame {frame} is drawn; another one follows in line {line} (--frame)"),
                     Err(_) => format!("what follows the last atom is passed over, from line {line} on"),
                 }));
             }
             line += 1;
         }
         Ok(None)
-    }
-}
-
-/// What decides an atom's colour.
-#[derive(Clone, Copy)]
-enum AtomColor {
-    Element(u8),
-    Color(DVec3),
-    Nothing,
-}
-
-/// This many colours are deduplicated. A file with more has about one for each sphere; storing 24 bytes is then cheaper
-/// than a look-up.
-const REMEMBERED: usize = 1 << 16;
-
-/// The indices of the colours so far.
-#[derive(Default)]
-struct Palette {
-    elements: HashMap<u8, u32>,
-    colors: HashMap<[u64; 3], u32>,
-    /// The last colour and its number: neighbours in a file are often of one colour.
-    last: Option<([u64; 3], u32)>,
-}
-
-impl Palette {
-    fn index(&mut self, paint: AtomColor, colors: &mut Vec<DVec3>) -> Result<u32, LineProblem> {
-        let color = match paint {
-            AtomColor::Element(element) => match self.elements.get(&element) {
-                Some(&index) => return Ok(index),
-                None => elements::color(element),
-            },
-            AtomColor::Color(color) => color,
-            AtomColor::Nothing => DVec3::splat(0.8),
-        };
-        let bits = color.to_array().map(f64::to_bits);
-        if let Some((_, index)) = self.last.filter(|(last, _)| *last == bits) {
-            return Ok(index);
-        }
-        let index = match self.colors.get(&bits) {
-            Some(&index) => index,
-            None => {
-                let next = u32::try_from(colors.len()).ok().filter(|&next| next < LookIndex::MOST);
-                let next = next.ok_or(LineProblem::TooManyColors)?;
-                colors.push(color);
-                if self.colors.len() < REMEMBERED {
-                    self.colors.insert(bits, next);
-                }
-                next
-            }
-        };
-        if let AtomColor::Element(element) = paint {
-            self.elements.insert(element, index);
-        }
-        self.last = Some((bits, index));
-        Ok(index)
     }
 }
 
@@ -513,6 +382,7 @@ fn text(line: &[u8]) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use super::super::spheres::REMEMBERED;
     use super::*;
 
     fn parse(text: &str, options: Options) -> Result<Spheres, ImportError> {
@@ -633,7 +503,12 @@ mod tests {
         let notes = |text: &str| parse(text, Options::default()).unwrap().notes;
         let frame = "1\n\nC 1 2 3\n";
         assert!(notes(&format!("{frame}\n \n")).is_empty());
-        assert_eq!(notes(&frame.repeat(3)), ["only the first frame is drawn; another one follows in line 4"]);
+        assert_eq!(notes(&frame.repeat(3)), ["frame 1 is drawn; another one follows in line 4 (--frame)"]);
+        let second = |frame| parse("1\n\nC 1 2 3\n\n2\n\nN 1 2 3\nO 4 5 6\n", Options { frame, ..Options::default() });
+        let found = second(2).unwrap();
+        assert_eq!(found.spheres, [sphere(1.0, 2.0, 3.0, 1.66), sphere(4.0, 5.0, 6.0, 1.5)]);
+        assert!(found.notes.is_empty(), "{:?}", found.notes);
+        assert_eq!(second(3).unwrap_err().to_string(), "atoms.xyz:9: there is no frame 3; the file has 2");
         assert_eq!(notes(&format!("{frame}\nC 1 2 3")), ["what follows the last atom is passed over, from line 5 on"]);
         let long = format!("{frame}{}", "C".repeat(BUFFER + 1));
         assert_eq!(notes(&long), ["what follows the last atom is passed over, from line 4 on"]);

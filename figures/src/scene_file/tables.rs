@@ -17,8 +17,10 @@ pub(super) struct SceneTable {
     pub(super) camera: Option<Spanned<CameraTable>>,
     #[serde(default)]
     pub(super) background: Option<VectorEntry>,
+    #[serde(default)]
+    pub(super) stage: Option<Spanned<bool>>,
     #[serde(default, deserialize_with = "tables")]
-    pub(super) light: Vec<LightTable>,
+    pub(super) light: Vec<Spanned<LightTable>>,
     #[serde(default)]
     pub(super) material: BTreeMap<String, Spanned<MaterialTable>>,
     #[serde(default, deserialize_with = "tables")]
@@ -45,7 +47,8 @@ pub(super) struct CameraTable {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LightTable {
-    pub(super) position: VectorEntry,
+    pub(super) position: Option<VectorEntry>,
+    pub(super) camera: Option<VectorEntry>,
     pub(super) color: Option<VectorEntry>,
 }
 
@@ -77,6 +80,7 @@ pub(super) struct SpheresTable {
     pub(super) scale: Option<NumberEntry>,
     pub(super) radius: Option<NumberEntry>,
     pub(super) material: Option<Spanned<String>>,
+    pub(super) frame: Option<Spanned<i64>>,
 }
 
 #[derive(serde::Deserialize)]

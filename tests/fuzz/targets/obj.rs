@@ -5,7 +5,7 @@ use figures::import::obj;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Ok(mesh) = obj::read(bytes, "fuzz.obj") {
+    if let Ok(mesh) = obj::read(bytes, "fuzz.obj", None) {
         assert_eq!(mesh.triangles.len(), mesh.vertex_colors.len());
         assert!(mesh.triangles.iter().all(|triangle| !triangle.is_degenerate()));
     }

@@ -2,7 +2,8 @@
 //! known and unknown length.
 #![no_main]
 
-use figures::import::xyz::{Options, read};
+use figures::import::spheres::Options;
+use figures::import::xyz::read;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

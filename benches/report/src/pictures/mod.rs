@@ -90,7 +90,7 @@ fn crowd() -> Scene {
         let look = scene.add_look(Look::colored(ball.color));
         scene.sphere_looks.push(look.expect("there are few looks"));
     }
-    scene.set_stage();
+    scene.set_stage(None);
     scene
 }
 
