@@ -53,15 +53,23 @@ impl Certifier<'_> {
     pub(crate) fn pixel(&mut self, rays: &[Ray], hits: &[Option<Hit>], shaded: &[Shaded]) -> [u16; 3] {
         let count = rays.len() as u64;
         if shaded.is_empty() {
-            // The mean of equal colours.
+            // The mean of equal colours, or of none.
             self.counts.doubles += count;
+            if self.scene.transparent {
+                return [0; 3];
+            }
             return self.scene.background.to_array().map(|channel| to_sample(channel, self.maxval));
         }
-        if let Some(samples) = certain(self.mean(hits, shaded), rays.len(), self.maxval) {
+        if let Some(samples) = certain(self.mean(hits, shaded), self.colors(rays, shaded), self.maxval) {
             self.counts.doubles += count;
             return samples;
         }
         self.climb(rays, hits, shaded)
+    }
+
+    /// How many colours a pixel is the mean of: one for each ray or, without a background, for each that hits.
+    fn colors(&self, rays: &[Ray], shaded: &[Shaded]) -> usize {
+        if self.scene.transparent { shaded.len() } else { rays.len() }
     }
 
     /// The sum of a pixel's clamped colours, and a bound of its error without the rounding of the sum.
@@ -70,6 +78,7 @@ impl Certifier<'_> {
         let mut sum = Shaded { color: DVec3::ZERO, error: 0.0 };
         for hit in hits {
             let color = match hit {
+                None if self.scene.transparent => continue,
                 None => self.scene.background,
                 Some(_) => {
                     let Shaded { color, error } = *shaded.next().expect("one for each hit");
@@ -97,7 +106,7 @@ impl Certifier<'_> {
                 _ => Seen::new(self.scene, self.objects, ray, hit).refined(lights),
             })
             .collect();
-        if let Some(samples) = certain(self.mean(hits, &shaded), rays.len(), self.maxval) {
+        if let Some(samples) = certain(self.mean(hits, &shaded), self.colors(rays, &shaded), self.maxval) {
             self.counts.double_double += count;
             return samples;
         }
@@ -139,6 +148,7 @@ impl Pixel<'_> {
         let mut shaded = self.shaded.iter();
         for (ray, hit) in self.rays.iter().zip(self.hits) {
             let color = match (hit, hit.and_then(|_| shaded.next())) {
+                (None, _) if scene.transparent => continue,
                 (None, _) => known(scene.background),
                 (Some(_), Some(exact)) if exact.error == 0.0 => known(exact.color),
                 (Some(hit), _) => {
@@ -149,7 +159,7 @@ impl Pixel<'_> {
             sum = [0, 1, 2].map(|i| sum[i] + color[i]);
         }
         // ⌊maxval sum / n + ½⌋
-        let count = Ball::from_integer(self.rays.len() as i64);
+        let count = Ball::from_integer(self.certifier.colors(self.rays, self.shaded) as i64);
         let scaled = sum.map(|sum| sum * Ball::from_integer(maxval.into()) / count + Ball::ONE.scale(-1));
         let mut samples = [0; 3];
         for (sample, scaled) in samples.iter_mut().zip(&scaled) {

@@ -8,13 +8,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 
 use crate::figure::{FIGURES, Figure};
 use crate::generate::{ColoredBall, Rule};
+use crate::import::source::Format;
 use crate::options::{ChangeOptions, Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
-use crate::output::{self, Format, Target};
+use crate::output::{self, Format as PictureFormat, Target};
+use crate::text::meant;
 use crate::{ask, convert, draw, generate, memory};
 
 #[derive(Parser)]
@@ -24,8 +26,7 @@ use crate::{ask, convert, draw, generate, memory};
     about = "Draws the six figures of the report, and scenes of your own",
     after_help = "Without an argument, asks for the number of the figure.\n\
                   Colors from 0 to 1 are stored as they are, those of a texture too: no gamma.",
-    args_conflicts_with_subcommands = true,
-    disable_help_subcommand = true
+    args_conflicts_with_subcommands = true
 )]
 struct Arguments {
     /// The figure to draw: a number from 1 to 6, or `all`
@@ -65,7 +66,7 @@ enum Command {
         output: PathBuf,
         /// The format to write, if not by the ending of OUTPUT
         #[arg(long)]
-        format: Option<Format>,
+        format: Option<PictureFormat>,
         /// Bits per sample, if not those of INPUT
         #[arg(long)]
         depth: Option<Depth>,
@@ -82,7 +83,7 @@ enum Command {
         tiles: Vec<PathBuf>,
         /// The format to write, if not by the ending of OUTPUT
         #[arg(long)]
-        format: Option<Format>,
+        format: Option<PictureFormat>,
     },
     /// Write a scene made by a rule
     Gen {
@@ -171,9 +172,32 @@ impl FromStr for Which {
         match (text, figure) {
             ("all", _) => Ok(Self::All),
             (_, Some(figure)) => Ok(Self::One(figure)),
+            _ if is_file(text) => Err(format!("did you mean `figures render {}`?", quoted_for_shell(text))),
+            _ if let Some(command) = meant_command(text) => Err(format!("did you mean `figures {command}`?")),
             _ => Err("expected the number of a figure, 1 to 6, or \"all\", or a command; see --help".to_owned()),
         }
     }
+}
+
+/// Whether a word is a file that can be drawn: there is one, or its ending says so.
+fn is_file(text: &str) -> bool {
+    let path = Path::new(text);
+    path.is_file() || output::ending(path).is_some_and(|ending| Format::of_ending(&ending).is_some() || ending == "gz")
+}
+
+/// A word as a shell reads it, if it has a space.
+fn quoted_for_shell(text: &str) -> String {
+    if text.contains(' ') { format!("'{text}'") } else { text.to_owned() }
+}
+
+/// The command that was probably meant.
+fn meant_command(text: &str) -> Option<String> {
+    let commands = Arguments::command();
+    let shown = commands.get_subcommands().filter(|command| !command.is_hide_set());
+    let names: Vec<&str> = shown.map(clap::Command::get_name).collect();
+    // A short word is near to many.
+    let long = text.len() > 2;
+    long.then(|| meant(text, names.into_iter()).map(str::to_owned)).flatten()
 }
 
 /// Runs the program with the arguments it was started with.

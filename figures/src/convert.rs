@@ -5,7 +5,7 @@ use std::path::Path;
 use rt_io::{Limits, read_image};
 
 use crate::outcome::Failure;
-use crate::output::{Format, Target};
+use crate::output::{Format, Picture, Target};
 use crate::{memory, stderr};
 
 /// Reads the image `input`, in any format that is read, and writes it to `output`.
@@ -35,7 +35,7 @@ pub fn convert(
         Some(maxval) => image.pixmap.scaled(maxval),
         None => image.pixmap,
     };
-    target.write(&pixmap, None, format)?;
+    target.write(&Picture::Opaque(pixmap), None, format)?;
     if image.transparent && !quiet {
         stderr::tell(&format!("warning: {}: transparency was dropped", input.display()));
     }

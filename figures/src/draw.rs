@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rt_io::Pixmap;
+use rt_io::png::Rgba;
 use serde::Serialize;
 
 use crate::camera::{Size, View};
@@ -16,9 +17,9 @@ use crate::certify::Certified;
 use crate::figure::Figure;
 use crate::load::Changes;
 use crate::objects::{Method, Objects};
-use crate::options::{ChangeOptions, DrawOptions, PictureSize};
+use crate::options::{Background, ChangeOptions, DrawOptions, PictureSize};
 use crate::outcome::{Failure, to_stdout};
-use crate::output::{Destination, Format, Target};
+use crate::output::{self, Destination, Format, NO_ALPHA, Picture, Target};
 use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::tile::{self, Label};
@@ -71,7 +72,7 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
     if folder && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("six pictures need a folder: --out DIR".to_owned()));
     }
-    let destination = destination(options, folder, Format::Ppm)?;
+    let destination = destination(options, folder, Format::Ppm, false)?;
     let pool = pool(options)?;
     figures.iter().try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), &destination, options, &pool))
 }
@@ -92,16 +93,23 @@ pub fn files(paths: &[PathBuf], changes: &ChangeOptions, options: &DrawOptions) 
             return Err(Failure::Usage(format!("{first} and {second} would be one picture, {name}; draw them apart")));
         }
     }
-    // A tile is a PPM.
-    let default = if options.tile.is_some() { Format::Ppm } else { Format::Png };
-    let destination = destination(options, several, default)?;
+    let &ChangeOptions { view, background, radius_scale, frame } = changes;
+    // A tile is a PPM, or with transparency a PNG.
+    let transparent = background == Some(Background::None);
+    let default = if options.tile.is_some() && !transparent { Format::Ppm } else { Format::Png };
+    let destination = destination(options, several, default, transparent)?;
     let pool = pool(options)?;
-    let &ChangeOptions { view, radius_scale, frame } = changes;
     let changes = &Changes { view, radius_scale, frame };
-    paths
-        .iter()
-        .zip(&names)
-        .try_for_each(|(path, name)| draw(name, || load::load(path, changes), &destination, options, &pool))
+    let load = |path: &Path| {
+        let mut scene = load::load(path, changes)?;
+        match background {
+            Some(Background::None) => scene.transparent = true,
+            Some(Background::Color(color)) => scene.background = color,
+            None => {}
+        }
+        Ok(scene)
+    };
+    paths.iter().zip(&names).try_for_each(|(path, name)| draw(name, || load(path), &destination, options, &pool))
 }
 
 /// The name of the picture of a file: its own, without its ending and that of gzip.
@@ -120,12 +128,20 @@ pub(crate) fn load(path: &Path) -> Result<Scene, Failure> {
 }
 
 /// Where the pictures go, and all that is wrong with the options before any work.
-fn destination(options: &DrawOptions, folder: bool, default: Format) -> Result<Destination, Failure> {
+fn destination(
+    options: &DrawOptions,
+    folder: bool,
+    default: Format,
+    transparent: bool,
+) -> Result<Destination, Failure> {
     if options.json && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("--json and --out - both write to stdout; choose one".to_owned()));
     }
     let destination = Destination::new(options.out.as_deref(), options.format, folder, default)?;
-    if options.tile.is_some() && destination.format() == Format::Png {
+    if transparent && destination.format() != Format::Png {
+        return Err(Failure::Usage(NO_ALPHA.to_owned()));
+    }
+    if options.tile.is_some() && destination.format() == Format::Png && !transparent {
         return Err(Failure::Usage("a tile is a PPM; merge can write PNG".to_owned()));
     }
     Ok(destination)
@@ -154,7 +170,7 @@ fn draw(
     // Load.
     let scene = pool.install(load)?;
     scene.warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
-    let (spheres, triangles) = (scene.spheres.len(), scene.triangles.len());
+    let (spheres, triangles, transparent) = (scene.spheres.len(), scene.triangles.len(), scene.transparent);
     let (PictureSize { width, height }, samples) = (options.size, options.samples);
     let view = view(&scene, options.size, samples)?;
     let rows = options.tile.map_or(0..height, |tile| tile.rows(height));
@@ -177,16 +193,21 @@ fn draw(
     let name = options.tile.map_or_else(|| name.to_owned(), |tile| format!("{name}-{}", tile.suffix()));
     let target = destination.target(&name)?;
     let (format, maxval, band) = (destination.format(), options.depth.maxval(), rows.len());
-    check_memory(width, band, maxval, format)?;
+    check_memory(if transparent { 4 } else { 3 }, width, band, maxval, format)?;
     let progress = Progress::new(band as u64, options.quiet);
     let drawn = pool.install(|| renderer.rows(&view, rows, maxval, &|rows| progress.advance(rows)));
     progress.finish();
     let trace = watch.lap();
 
     // Write.
-    let pixmap = Pixmap::new(width as usize, band, maxval, drawn.samples)
-        .expect("the renderer fills the picture with samples up to maxval");
-    target.write(&pixmap, label.as_deref(), format)?;
+    let (columns, height, all) = (width as usize, band, drawn.samples);
+    let picture = if transparent {
+        Picture::Transparent(Rgba { width: columns, height, maxval, samples: all })
+    } else {
+        let pixmap = Pixmap::new(columns, height, maxval, all);
+        Picture::Opaque(pixmap.expect("the renderer fills the picture with samples up to maxval"))
+    };
+    target.write(&picture, label.as_deref(), format)?;
     let seconds = Seconds { load, build, trace, write: watch.lap() };
 
     let picture = target.name();
@@ -220,13 +241,21 @@ fn draw(
 /// What is wrong with the tiles, or why the picture could not be written.
 pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<Format>) -> Result<(), Failure> {
     let target = Target::exactly(output);
-    let format = target.format(format)?;
-    target.write(&tile::merge(tiles)?, None, format)
+    // A name that is not written is refused before any work.
+    let named = target.format(format)?;
+    let picture = tile::merge(tiles)?;
+    let said = format.is_some() || output::ending(output).is_some();
+    let format = match picture {
+        Picture::Transparent(_) if said && named != Format::Png => return Err(Failure::Usage(NO_ALPHA.to_owned())),
+        Picture::Transparent(_) => Format::Png,
+        Picture::Opaque(_) => named,
+    };
+    target.write(&picture, None, format)
 }
 
 /// Checks that there is memory for a picture while it is drawn and written.
-fn check_memory(width: u32, rows: usize, maxval: u16, format: Format) -> Result<(), Failure> {
-    let samples = 3 * u64::from(width) * rows as u64;
+fn check_memory(channels: u64, width: u32, rows: usize, maxval: u16, format: Format) -> Result<(), Failure> {
+    let samples = channels * u64::from(width) * rows as u64;
     // It is drawn with two bytes a sample; where one is enough, they are copied then.
     let (held, copy) = if maxval <= 255 { (samples, samples) } else { (2 * samples, 0) };
     let bytes = (2 * samples + copy).max(held + format.memory_to_write(samples, maxval));

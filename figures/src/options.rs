@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
+use glam::DVec3;
 
 use crate::objects::Method;
 use crate::output::Format;
@@ -59,12 +60,49 @@ pub struct ChangeOptions {
     /// Only for what lies on the stage: files without a scene, and scenes with `stage = true`.
     #[arg(long, value_name = "x|y|z|iso|AZ,EL", allow_hyphen_values = true)]
     pub view: Option<Direction>,
+    /// The color where no object is hit: R,G,B from 0 to 1, #RRGGBB, black, white; none: a PNG is transparent there
+    #[arg(long, value_name = "COLOR|none")]
+    pub background: Option<Background>,
     /// Multiply the radii of all spheres
     #[arg(long, value_name = "FACTOR", value_parser = factor)]
     pub radius_scale: Option<f64>,
     /// Draw this frame of an XYZ file, or model of a PDB file [default: 1]
     #[arg(long, value_name = "N", value_parser = frame)]
     pub frame: Option<u64>,
+}
+
+/// What is behind the objects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Background {
+    /// Nothing.
+    None,
+    /// A colour, each channel in `0..=1`.
+    Color(DVec3),
+}
+
+impl FromStr for Background {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let hex = |text: &str| {
+            let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+            let [_, red, green, blue] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+            Some(DVec3::new(red.into(), green.into(), blue.into()) / 255.0)
+        };
+        let numbers = |text: &str| {
+            let channels = text.split(',').map(|channel| channel.trim().parse().ok()).collect::<Option<Vec<f64>>>()?;
+            let color = DVec3::from_array(channels.try_into().ok()?);
+            color.to_array().iter().all(|channel| (0.0..=1.0).contains(channel)).then_some(color)
+        };
+        match text {
+            "none" => Ok(Self::None),
+            "black" => Ok(Self::Color(DVec3::ZERO)),
+            "white" => Ok(Self::Color(DVec3::ONE)),
+            _ => hex(text).or_else(|| numbers(text)).map(Self::Color).ok_or_else(|| {
+                "expected none, black, white, #RRGGBB, or three numbers from 0 to 1, such as 0.2,0.3,0.5".to_owned()
+            }),
+        }
+    }
 }
 
 fn factor(text: &str) -> Result<f64, String> {

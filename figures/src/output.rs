@@ -10,6 +10,18 @@ use rt_io::{Pixmap, png, save_atomically};
 
 use crate::outcome::{Failure, stream_to_stdout};
 
+/// A picture, with transparency or without.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Picture {
+    /// Each pixel has a colour.
+    Opaque(Pixmap),
+    /// And an alpha.
+    Transparent(png::Rgba),
+}
+
+/// Why a transparent picture is not written as PPM.
+pub(crate) const NO_ALPHA: &str = "a picture without a background is a PNG; PPM has no transparency";
+
 /// The format of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
@@ -57,8 +69,13 @@ impl Format {
         }
     }
 
-    /// Writes the picture, with a comment line in a PPM.
-    fn write(self, pixmap: &Pixmap, comment: Option<&str>, out: &mut dyn Write) -> io::Result<()> {
+    /// Writes the picture, with a comment line in a PPM or in a PNG with transparency.
+    fn write(self, picture: &Picture, comment: Option<&str>, out: &mut dyn Write) -> io::Result<()> {
+        let pixmap = match (picture, self) {
+            (Picture::Opaque(pixmap), _) => pixmap,
+            (Picture::Transparent(picture), Self::Png) => return png::write_rgba(picture, comment, out),
+            (Picture::Transparent(_), _) => return Err(io::Error::other(NO_ALPHA)),
+        };
         match (self, comment) {
             (Self::Ppm, None) => ppm::write(pixmap, Encoding::Raw, out),
             (Self::Ppm, Some(comment)) => ppm::write_with_comment(pixmap, Encoding::Raw, comment, out),
@@ -203,8 +220,8 @@ impl Target {
     ///
     /// # Errors
     /// What the system says, with the path.
-    pub fn write(&self, pixmap: &Pixmap, comment: Option<&str>, format: Format) -> Result<(), Failure> {
-        self.write_with(|out| format.write(pixmap, comment, out))
+    pub fn write(&self, picture: &Picture, comment: Option<&str>, format: Format) -> Result<(), Failure> {
+        self.write_with(|out| format.write(picture, comment, out))
     }
 
     /// Writes what `write` writes: a file appears whole or not at all.

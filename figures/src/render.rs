@@ -37,7 +37,7 @@ pub struct Renderer {
 /// Rows of a picture, and how many rays they took.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rows {
-    /// RGB samples, row by row from the top.
+    /// RGB samples, row by row from the top; RGBA if the scene has no background.
     pub samples: Vec<u16>,
     /// Rays that were sent.
     pub rays: u64,
@@ -64,7 +64,8 @@ impl Renderer {
     /// `advance` is called from any thread with the number of rows that have just been done.
     pub fn rows(&self, view: &View, rows: Range<u32>, maxval: u16, advance: &(dyn Fn(u64) + Sync)) -> Rows {
         let Size { width, samples, .. } = view.size();
-        let row_length = 3 * width as usize;
+        let channels = if self.scene.transparent { 4 } else { 3 };
+        let row_length = channels * width as usize;
         let tile_width = (TILE_RAYS / TILE_HEIGHT / samples / samples).clamp(1, TILE_WIDTH);
         let mut picture = vec![0; row_length * rows.len()];
         let (hits, certified) = (rows.clone().into_par_iter().step_by(TILE_HEIGHT as usize))
@@ -78,8 +79,10 @@ impl Renderer {
                     for (tile_row, line) in
                         tile.pixels.chunks_exact((right - left) as usize).zip(band.chunks_exact_mut(row_length))
                     {
-                        for (samples, pixel) in tile_row.iter().zip(line[3 * left as usize..].chunks_exact_mut(3)) {
-                            pixel.copy_from_slice(samples);
+                        let pixels = line[channels * left as usize..].chunks_exact_mut(channels);
+                        for ((samples, alpha), pixel) in tile_row.iter().zip(pixels) {
+                            pixel[..3].copy_from_slice(samples);
+                            pixel[3..].fill(*alpha);
                         }
                     }
                 }
@@ -117,8 +120,8 @@ struct RayTile<'a> {
     /// What the rays see, and in which colours, without those that see nothing.
     seen: Vec<SurfacePoint<'a>>,
     shaded: Vec<Shaded>,
-    /// The tile's pixels, row by row: the result.
-    pixels: Vec<[u16; 3]>,
+    /// The tile's pixels, row by row, each with its alpha: the result.
+    pixels: Vec<([u16; 3], u16)>,
 }
 
 impl<'a> RayTile<'a> {
@@ -176,7 +179,11 @@ impl<'a> RayTile<'a> {
         for (rays, hits) in self.rays.chunks_exact(in_pixel).zip(self.hits.chunks_exact(in_pixel)) {
             let (now, later) = shaded.split_at(hits.iter().flatten().count());
             shaded = later;
-            self.pixels.push(certifier.pixel(rays, hits, now));
+            // ⌊maxval hits / n + ½⌋
+            let (hits_here, most) = (now.len() as u64, u64::from(certifier.maxval));
+            let alpha = (2 * most * hits_here + in_pixel as u64) / (2 * in_pixel as u64);
+            let alpha = u16::try_from(alpha).expect("a share of maxval");
+            self.pixels.push((certifier.pixel(rays, hits, now), alpha));
         }
         self.shaded.len() as u64
     }

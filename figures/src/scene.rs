@@ -16,6 +16,8 @@ pub struct Scene {
     pub camera: Camera,
     /// The colour where no object is hit.
     pub background: DVec3,
+    /// Whether there is no background: only what hits an object has a colour, and the rest is transparent.
+    pub transparent: bool,
     /// The point lights. Without any, every object is drawn flat, in its own colour.
     pub lights: Vec<PointLight>,
     /// The looks that a [`LookIndex`] may stand for.
@@ -94,6 +96,9 @@ impl Scene {
         let mut sum = Fingerprint(0);
         let Self { camera, background, lights, looks, colors, spheres, sphere_looks, .. } = self;
         let Self { triangles, triangle_looks, vertex_colors, .. } = self;
+        if self.transparent {
+            sum.word(1);
+        }
         // Short lists are hashed as text, in which two different doubles differ; long ones by their bits.
         sum.text(&format!("{camera:?} {background:?} {lights:?}"));
         for Look { paint, material } in looks {

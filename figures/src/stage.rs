@@ -152,10 +152,12 @@ const FROM: DVec3 = DVec3::new(12.0, 9.0, 20.0);
 /// The colour behind the objects.
 const BACKGROUND: DVec3 = DVec3::new(0.05, 0.06, 0.08);
 
-/// The lights: their places in radii of the scene, to the right, up and back, and their colours.
+/// The lights: their places in radii of the scene, to the right, up and back, and their colours. The first is near, so
+/// that it meets equal surfaces at different angles and their shades differ from place to place; the second leaves its
+/// shadow side dark, and blue.
 const LIGHTS: [(DVec3, DVec3); 2] = [
-    (DVec3::new(-3.0, 6.0, 9.0), DVec3::new(0.95, 0.94, 0.9)),
-    (DVec3::new(8.0, -1.0, 3.0), DVec3::new(0.36, 0.4, 0.48)),
+    (DVec3::new(-1.8, 2.5, 2.6), DVec3::new(1.0, 0.98, 0.93)),
+    (DVec3::new(3.0, -1.0, 2.0), DVec3::new(0.24, 0.28, 0.36)),
 ];
 
 /// A plane of objects that is seen at less than this slope, the sine of 7.2 degrees, is seen along its normal instead.
@@ -249,6 +251,35 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn named_views_look_along_the_axes() {
+        let axes = |text: &str| {
+            let mut scene = Scene { spheres: vec![Sphere::new(DVec3::splat(9.0), 1.0).unwrap()], ..Scene::default() };
+            scene.set_stage(Some(text.parse().unwrap()));
+            scene.camera.axes()
+        };
+        for (text, right, up) in [
+            ("x", DVec3::Y, DVec3::Z),
+            ("y", DVec3::NEG_X, DVec3::Z),
+            ("z", DVec3::X, DVec3::Y),
+            ("90,0", DVec3::NEG_X, DVec3::Z),
+            ("-450,0", DVec3::X, DVec3::Z),
+            ("0,90", DVec3::Y, DVec3::NEG_X),
+            ("0,-90", DVec3::Y, DVec3::X),
+        ] {
+            assert_eq!(axes(text), [right, up, up.cross(right)], "{text}");
+        }
+        let [right, up, forward] = axes("iso");
+        assert!(is_near(-forward, DVec3::ONE) && is_near(right, DVec3::new(-1.0, 1.0, 0.0)), "{right} {up} {forward}");
+        let [_, _, forward] = axes("30, -20");
+        let (ground, height) = (20_f64.to_radians().cos(), -20_f64.to_radians().sin());
+        let azimuth = 30_f64.to_radians();
+        assert!(is_near(-forward, DVec3::new(ground * azimuth.cos(), ground * azimuth.sin(), height)), "{forward}");
+        for bad in ["", "up", "10", "10,", "10,91", "nan,0", "0,nan", "inf,0", "1,2,3"] {
+            assert!(bad.parse::<Direction>().is_err(), "{bad}");
         }
     }
 

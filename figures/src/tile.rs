@@ -1,18 +1,21 @@
 //! Bands of a picture, for job arrays: which rows a tile has, what its file says about itself, and how tiles are
 //! joined.
 //!
-//! Tile `i` of `n` has the rows from `⌊(i − 1) H / n⌋` up to `⌊i H / n⌋`. Its file is a PPM of these rows, with one
-//! comment line that says where they belong. Joined, the rows are byte for byte those of the picture drawn in one go.
+//! Tile `i` of `n` has the rows from `⌊(i − 1) H / n⌋` up to `⌊i H / n⌋`. Its file is a PPM of these rows, or with
+//! transparency a PNG, with one comment that says where they belong. Joined, the rows are byte for byte those of the picture drawn in one go.
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{self, BufRead, BufReader};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use rt_io::png::{self, Rgba};
 use rt_io::ppm::{self, PpmError};
 use rt_io::{Limits, Pixmap};
+
+use crate::output::Picture;
 
 /// One tile of several: `i/n`, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,19 +105,23 @@ impl Label {
 struct TileFile {
     path: PathBuf,
     label: Label,
-    pixmap: Pixmap,
+    maxval: u16,
+    /// RGB, or RGBA.
+    samples: Vec<u16>,
+    transparent: bool,
 }
 
 impl TileFile {
     /// What tiles of one picture have in common, each with its name.
-    fn common(&self) -> [(&'static str, String); 5] {
+    fn common(&self) -> [(&'static str, String); 6] {
         let Label { width, height, samples, scene, version, .. } = &self.label;
         [
             ("version", version.clone()),
             ("size", format!("{width}x{height}")),
             ("samples", samples.to_string()),
             ("scene", format!("{scene:016x}")),
-            ("maxval", self.pixmap.maxval().to_string()),
+            ("maxval", self.maxval.to_string()),
+            ("transparency", if self.transparent { "some" } else { "none" }.to_owned()),
         ]
     }
 }
@@ -131,6 +138,8 @@ enum Obstacle {
     Open { path: PathBuf, source: io::Error },
     #[error("{}: {source}", path.display())]
     Ppm { path: PathBuf, source: PpmError },
+    #[error("{}: {source}", path.display())]
+    Png { path: PathBuf, source: io::Error },
     #[error("{}: not a tile: {what}", path.display())]
     NoTile { path: PathBuf, what: &'static str },
     #[error("{}: a tile of another picture: {what} {found}, but {expected} in {}", path.display(), first.display())]
@@ -151,7 +160,7 @@ enum Obstacle {
 /// The first thing that is wrong: a file that is no tile, or a tile of another picture; then rows that are missing or
 /// there twice.
 #[expect(clippy::missing_panics_doc, reason = "the rows are checked to be all there")]
-pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
+pub fn merge(paths: &[PathBuf]) -> Result<Picture, MergeError> {
     let mut parts = paths.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = parts.first() else { return Err(Obstacle::Nothing.into()) };
     for part in &parts[1..] {
@@ -161,7 +170,8 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
             return Err(Obstacle::Stranger { path, first, what, found, expected }.into());
         }
     }
-    let (width, height, maxval) = (first.label.width, first.label.height, first.pixmap.maxval());
+    let (width, height, maxval) = (first.label.width, first.label.height, first.maxval);
+    let transparent = first.transparent;
     parts.sort_by_key(|part| part.label.rows.start);
     for pair in parts.windows(2) {
         let [first, second] = [&pair[0], &pair[1]];
@@ -177,29 +187,44 @@ pub fn merge(paths: &[PathBuf]) -> Result<Pixmap, MergeError> {
     if let Some((end, start)) = ends.zip(starts).find(|(end, start)| end < start) {
         return Err(Obstacle::Gap { rows: end..start }.into());
     }
-    let count = 3 * u64::from(width) * u64::from(height);
+    let count = if transparent { 4 } else { 3 } * u64::from(width) * u64::from(height);
     let mut samples = Vec::new();
     if !usize::try_from(count).is_ok_and(|count| samples.try_reserve_exact(count).is_ok()) {
         return Err(Obstacle::Memory { megabytes: (2 * count).div_ceil(1_000_000), width, height }.into());
     }
     for part in parts {
-        samples.extend(part.pixmap.into_samples());
+        samples.extend(part.samples);
     }
-    Ok(Pixmap::new(width as usize, height as usize, maxval, samples).expect("the rows were checked to be all there"))
+    let (width, height) = (width as usize, height as usize);
+    if transparent {
+        return Ok(Picture::Transparent(Rgba { width, height, maxval, samples }));
+    }
+    let pixmap = Pixmap::new(width, height, maxval, samples);
+    Ok(Picture::Opaque(pixmap.expect("the rows were checked to be all there")))
 }
 
 /// Reads a tile.
 fn read(path: &Path) -> Result<TileFile, Obstacle> {
     let file = File::open(path).map_err(|source| Obstacle::Open { path: path.to_owned(), source })?;
-    let read = ppm::read_with_comments(BufReader::new(file), &Limits::default());
-    let (pixmap, comments) = read.map_err(|source| Obstacle::Ppm { path: path.to_owned(), source })?;
+    let mut file = BufReader::new(file);
+    let start = file.fill_buf().map_err(|source| Obstacle::Open { path: path.to_owned(), source })?;
+    let transparent = start.starts_with(b"\x89PNG");
+    let (width, height, maxval, samples, comments) = if transparent {
+        let read = png::read_rgba(file, &Limits::default());
+        let (picture, comments) = read.map_err(|source| Obstacle::Png { path: path.to_owned(), source })?;
+        (picture.width, picture.height, picture.maxval, picture.samples, comments)
+    } else {
+        let read = ppm::read_with_comments(file, &Limits::default());
+        let (pixmap, comments) = read.map_err(|source| Obstacle::Ppm { path: path.to_owned(), source })?;
+        (pixmap.width(), pixmap.height(), pixmap.maxval(), pixmap.into_samples(), comments)
+    };
     let refuse = |what| Obstacle::NoTile { path: path.to_owned(), what };
     let label = comments.iter().find_map(|comment| Label::parse(comment));
     let label = label.ok_or_else(|| refuse("no comment says which rows it has"))?;
-    if pixmap.width() != label.width as usize || pixmap.height() != label.rows.len() {
+    if width != label.width as usize || height != label.rows.len() {
         return Err(refuse("its size is not what its comment says"));
     }
-    Ok(TileFile { path: path.to_owned(), label, pixmap })
+    Ok(TileFile { path: path.to_owned(), label, maxval, samples, transparent })
 }
 
 #[cfg(test)]
