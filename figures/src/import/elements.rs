@@ -74,7 +74,7 @@ pub(crate) fn find(name: &[u8]) -> Option<ElementName> {
 }
 
 /// Uranium: heavier elements do not occur in molecules.
-const HEAVIEST: u8 = 92;
+pub(super) const HEAVIEST: u8 = 92;
 
 /// Whether two letters look like a position in a protein.
 pub(super) fn is_position(letters: &[u8]) -> bool {

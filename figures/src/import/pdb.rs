@@ -160,9 +160,9 @@ impl Reader {
             // Ions have the name of their residue.
             [first, second, ..] if residue.eq_ignore_ascii_case(name) => plain(&[*first, *second]),
             // Many programs start the names of one letter's elements a column early. SE is selenium all the same.
-            [first, second, b' ', _] if elements::is_position(&[*first, *second]) && columns != b"SE  " => {
-                let two = line.starts_with(b"HETATM").then(|| plain(&[*first, *second])).flatten();
-                two.or_else(|| plain(&[*first]))
+            [first, second, ..] if elements::is_position(&[*first, *second]) && columns != b"SE  " => {
+                let two = (name.len() == 2 && line.starts_with(b"HETATM")).then(|| plain(&[*first, *second])).flatten();
+                two.filter(|&element| element <= elements::HEAVIEST).or_else(|| plain(&[*first]))
             }
             [first, second, ..] if *first != b'H' => plain(&[*first, *second]),
             _ => None,
@@ -171,7 +171,8 @@ impl Reader {
             return Ok(element);
         }
         match elements::find(name) {
-            Some(ElementName::Plain(element) | ElementName::Label(element)) => {
+            Some(ElementName::Plain(element)) => Ok(element),
+            Some(ElementName::Label(element)) => {
                 self.names.add(name, element);
                 Ok(element)
             }
@@ -233,6 +234,9 @@ mod tests {
             ("ATOM", "ZN  ", " ZN", 2.39),
             ("HETATM", " D  ", "LIG", 1.20),
             ("ATOM", "SE  ", "MSE", 1.82),
+            ("ATOM", "NH1 ", "ARG", 1.66),
+            ("ATOM", "OG1 ", "THR", 1.50),
+            ("HETATM", "SG  ", "LIG", 1.89),
             ("ATOM", "CL  ", "LIG", 1.82),
             ("HETATM", "HG  ", "LIG", 2.45),
             ("HETATM", "H12 ", "LIG", 1.20),
