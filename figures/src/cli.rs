@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::figure::{FIGURES, Figure};
 use crate::generate::{ColoredBall, Rule};
@@ -124,6 +125,14 @@ enum Command {
         #[arg(long, value_name = "WxH", default_value = "1024x768")]
         size: PictureSize,
     },
+    /// Write what makes a shell complete this program's arguments
+    #[command(after_help = "For bash: figures completions bash > ~/.local/share/bash-completion/completions/figures")]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Write the man page: `figures man | man -l -`
+    Man,
     /// Moved: `cargo run --release -p report` measures speed against error
     #[command(hide = true)]
     Report {
@@ -236,6 +245,16 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
             }
         }
         Some(Command::Tests { scene, size }) => draw::count_tests(&scene, size),
+        Some(Command::Completions { shell }) => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "figures", &mut script);
+            to_stdout(&script)
+        }
+        Some(Command::Man) => {
+            let mut page = Vec::new();
+            clap_mangen::Man::new(Arguments::command()).render(&mut page)?;
+            to_stdout(&page)
+        }
         Some(Command::Report { rest }) => Err(Failure::Usage(format!(
             "the report is a program of its own: `cargo run --release -p report{}`",
             if rest.is_empty() { String::new() } else { format!(" -- {}", rest.join(" ")) }

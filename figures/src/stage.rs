@@ -157,7 +157,7 @@ const BACKGROUND: DVec3 = DVec3::new(0.05, 0.06, 0.08);
 /// shadow side dark, and blue.
 const LIGHTS: [(DVec3, DVec3); 2] = [
     (DVec3::new(-1.8, 2.5, 2.6), DVec3::new(1.0, 0.98, 0.93)),
-    (DVec3::new(3.0, -1.0, 2.0), DVec3::new(0.24, 0.28, 0.36)),
+    (DVec3::new(3.0, -1.0, 2.0), DVec3::new(0.3, 0.34, 0.42)),
 ];
 
 /// A plane of objects that is seen at less than this slope, the sine of 7.2 degrees, is seen along its normal instead.

@@ -681,3 +681,15 @@ fn a_slip_is_answered_with_what_was_meant() {
     let help = String::from_utf8(stdout(folder.path(), &["help", "render"])).unwrap();
     assert!(help.contains("--view") && help.contains("figures render molecule.pdb -o molecule.png"), "{help}");
 }
+
+#[test]
+fn completions_and_the_man_page_know_the_commands() {
+    let folder = folder();
+    let text = |arguments: &[&str]| String::from_utf8(stdout(folder.path(), arguments)).unwrap();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = text(&["completions", shell]);
+        assert!(script.contains("render") && script.contains("radius-scale"), "{shell}: {script}");
+    }
+    let page = text(&["man"]);
+    assert!(page.starts_with(".ie") && page.contains("figures\\-render(1)"), "{page}");
+}
