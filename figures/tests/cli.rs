@@ -594,6 +594,16 @@ fn a_background_of_none_is_transparent() {
         }
         assert!(partly > 20, "{partly} pixels on an edge");
     }
+    // On an edge too the colour is that of the samples that hit, to the byte.
+    let ball =
+        "[[sphere]]\ncenter = [0, 0, -3]\nradius = 1\nmaterial = \"m\"\n[material.m]\ncolor = [0.25, 0.5, 0.75]\n";
+    fs::write(folder.path().join("ball.toml"), ball).unwrap();
+    let arguments = ["render", "ball.toml", "--size", "31x23", "--samples", "5", "--background", "none", "-o", "-"];
+    let pixels = read(stdout(folder.path(), &arguments));
+    let (hit, missed): (Vec<_>, Vec<_>) = pixels.chunks_exact(4).partition(|pixel| pixel[3] > 0);
+    assert!(hit.iter().all(|pixel| pixel[..3] == [64, 128, 191]) && missed.iter().all(|pixel| **pixel == [0; 4]));
+    let shares: Vec<u16> = hit.iter().map(|pixel| pixel[3]).collect();
+    assert!(shares.iter().all(|&alpha| (0..=25).any(|n| (510 * n + 25) / 50 == alpha)), "{shares:?}");
     assert_eq!(draw("#ffffff", &[]), draw("1,1,1", &[]));
     // Bands carry it, and so does what they are joined to.
     for band in ["1/3", "2/3", "3/3"] {
