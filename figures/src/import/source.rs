@@ -11,7 +11,7 @@ use super::problem::{FileProblem, ImportError};
 use crate::text::file_name;
 
 /// A packed file is read up to this size: a few kilobytes can unpack to anything.
-const MOST_UNPACKED: u64 = 4 << 30;
+const MOST_UNPACKED: u64 = 1 << 30;
 /// So many bytes at the start tell the format.
 const START: u64 = 4096;
 
@@ -172,6 +172,6 @@ mod tests {
     fn a_bounded_reader_gives_so_many_bytes_and_no_more() {
         let read = |left| Bounded { source: &[7; 10][..], left }.read_to_end(&mut Vec::new());
         assert_eq!(read(10).unwrap(), 10);
-        assert_eq!(read(9).unwrap_err().to_string(), "it unpacks to more than 4096 MiB; unpack it first");
+        assert_eq!(read(9).unwrap_err().to_string(), "it unpacks to more than 1024 MiB; unpack it first");
     }
 }
