@@ -70,11 +70,15 @@ struct Count(usize);
 impl Query for Count {
     type Answer = usize;
 
+    fn begin(_: &mut usize) -> Self {
+        Self::default()
+    }
+
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
         leaf.each_hit(ray, |_| self.0 += leaves.indices(place).count());
     }
 
-    fn answer(&self, _: &Leaves, _: &PreparedRay) -> usize {
+    fn answer(&mut self, _: &Leaves, _: &PreparedRay) -> usize {
         self.0
     }
 }
@@ -185,8 +189,8 @@ impl Bvh {
     /// If the slices differ in length.
     pub fn count_batch(&self, rays: &[Ray], within: Range<f64>, counts: &mut [usize]) {
         assert_eq!(rays.len(), counts.len(), "one place for the count of each ray");
-        let answers = rays.par_iter().zip(counts).with_min_len(64);
-        answers.for_each(|(ray, count)| *count = self.count(ray, within.clone()));
+        let parts = rays.par_chunks(BATCH).zip(counts.par_chunks_mut(BATCH));
+        parts.for_each(|(rays, counts)| self.batch::<Count>(rays, &within, counts));
     }
 
     /// Writes where the turned ray of [`Triangle::crosses`] crosses surfaces, in its exact order.

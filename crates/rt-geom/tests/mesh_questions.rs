@@ -192,7 +192,7 @@ impl Nested {
             2 => (aim - 1e6 * direction, f64::INFINITY),
             _ => (aim - 8.0 * direction.normalize(), f64::INFINITY),
         };
-        let towards = if i % 5 < 2 && i % 4 == 0 { aim - origin } else { direction };
+        let towards = if i % 5 < 2 && i.is_multiple_of(4) { aim - origin } else { direction };
         Some((Ray::new(origin, towards).ok()?, radius))
     }
 
