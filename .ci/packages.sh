@@ -20,9 +20,9 @@ cargo clippy -p rt-io --no-default-features --all-targets -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc -p rt-io --no-default-features --no-deps
 cargo test -p rt-io --no-default-features
 
-# All that `cargo publish --dry-run` does but ask the registry.
+# All that `cargo publish --dry-run` does but ask the registry, and to build: that comes below.
 # shellcheck disable=SC2046,SC2086
-cargo package --allow-dirty $(printf -- '-p %s ' $crates)
+cargo package --allow-dirty --no-verify $(printf -- '-p %s ' $crates)
 
 # The packages as a workspace of their own: their examples and the examples of their pages, without `oracle`.
 target=$(cargo metadata --no-deps --format-version 1 | grep -o '"target_directory":"[^"]*"' | cut -d'"' -f4)

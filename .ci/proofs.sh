@@ -26,7 +26,6 @@ mkdir -p "$build"
 find "$build" -maxdepth 1 -name '*.v' -delete
 cp -p docs/proofs/*.v "$build"
 
-# Every constant NAME, in capitals, needs a theorem NAME_holds; every theorem is asked what it rests on.
 # Every constant NAME, in capitals, needs a theorem NAME_holds. All theorems are asked at once what they rest on.
 theorems=()
 for file in docs/proofs/*.v; do
