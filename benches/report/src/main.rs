@@ -59,6 +59,9 @@ struct ReportOptions {
     /// Measure nothing; write the hostile corpus, with so many rows for each class of cases
     #[arg(long, value_name = "ROWS", num_args = 0..=1, default_missing_value = "24", conflicts_with_all = ["quick", "check", "from"])]
     corpus: Option<usize>,
+    /// Measure nothing; write the picture of the front page: one scene by the textbook and by ours
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "check", "from", "corpus"])]
+    front: Option<PathBuf>,
     /// With --check: also fail where a time differs by more than this factor
     #[arg(long, value_name = "FACTOR", requires = "check", value_parser = factor)]
     factor: Option<f64>,
@@ -82,6 +85,10 @@ fn main() -> ExitCode {
 
 /// Measures, or reads what was measured, and writes or compares it.
 fn run(options: &ReportOptions) -> Result<(), Failure> {
+    if let Some(path) = &options.front {
+        let png = pictures::front();
+        return Ok(save_atomically(path, |out| out.write_all(&png))?);
+    }
     if options.out == Path::new("-") {
         return Err(Failure::Usage("a report is many files and needs a folder: --out DIR".to_owned()));
     }

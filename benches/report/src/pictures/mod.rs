@@ -5,6 +5,7 @@
 //! in families from easy to hard.
 
 mod exact;
+mod front;
 mod pixels;
 pub(super) mod plot;
 mod results;
@@ -26,6 +27,7 @@ use rt_geom::{Bvh, Hit, Ray, Sphere};
 
 use super::measure::{Effort, take_turns};
 use super::progress::progress;
+pub(super) use front::front;
 use pixels::{Samples8, as_png, paint, samples};
 pub(super) use results::{Group, Painted, Pictured};
 use scenes::Made;
