@@ -3,11 +3,11 @@
 //! The ray is turned to the direction `d + (e, e², e³)` with an infinitely small `e > 0`, for all surfaces alike
 //! ([`Triangle::crosses`] has the rule). It passes no edge, no vertex and no plane along its face and touches no sphere,
 //! unless its origin lies there, so entering and leaving a closed surface alternate. The order is that of the turned
-//! ray: by the rounded `t`, and where that is equal by exact numbers,
+//! ray: by the rounded `t`, and where that is equal by exact numbers, polynomials in `e`:
 //!
 //! ```text
 //!     triangle:  t = h / s(e)                          s(e) = N.d + e N_x + e² N_y + e³ N_z
-//!     sphere:    t = (-b -+ sqrt(Delta)) / a
+//!     sphere:    a(e) t² + 2 b(e) t + c = 0            a(e) = |d(e)|², b(e) = w.d(e), c = |w|² - r²
 //! ```
 
 use std::cmp::Ordering;
@@ -22,11 +22,8 @@ use crate::ray::PreparedRay;
 use crate::triangle::slope_sign;
 use crate::{Ray, Shape, Side, Sphere, Triangle};
 
-/// Limbs for the order of two crossings: of degree ten at most, multiples of 2^-10740 below 2^10260 take 330.
-type Number = Dyadic<336>;
-
-/// Limbs for the series of a tangent ray's `Delta`, of degree four.
-type SeriesNumber = Dyadic<140>;
+/// Limbs for the order of two crossings: of degree eight at most, multiples of 2^-8592 below 2^8211 take 263.
+type Number = Dyadic<268>;
 
 /// Where a ray crosses a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +65,7 @@ pub(crate) fn of_sphere(sphere: &Sphere, ray: &Ray) -> [Option<Pass>; 2] {
     let ahead = |t: f64| t > 0.0 || (t.to_bits() == 0 && sphere.side(ray.origin()) != Side::On);
     match sphere.roots(ray) {
         Roots::Two(near, far) => [pass(near, true, ahead(near)), pass(far, false, ahead(far))],
-        Roots::One(t) if sphere.radius() > 0.0 && ahead(t) && tangent_series(sphere, ray) == Ordering::Greater => {
+        Roots::One(t) if sphere.radius() > 0.0 && ahead(t) && turned_delta(sphere, ray) == Ordering::Greater => {
             [pass(t, true, true), pass(t, false, true)]
         }
         // From the surface along a tangent: one root stays zero, and the other goes ahead or back.
@@ -82,23 +79,12 @@ pub(crate) fn of_sphere(sphere: &Sphere, ray: &Ray) -> [Option<Pass>; 2] {
     }
 }
 
-/// The sign of `Delta` for the turned direction, of a ray that touches the sphere: that of the first coefficient of
-/// `a(e) r² - |w x d(e)|²` that is not zero.
+/// The sign of `Delta` for the turned direction, of a ray that touches the sphere.
 #[cold]
-fn tangent_series(sphere: &Sphere, ray: &Ray) -> Ordering {
-    let w = difference::<SeriesNumber>(ray.origin(), sphere.center());
-    // d(e) = d + X e + Y e² + Z e³
-    let directions = [ray.direction(), DVec3::X, DVec3::Y, DVec3::Z].map(|v| v.to_array().map(SeriesNumber::from_f64));
-    let products = directions.each_ref().map(|d| cross(&w, d));
-    let radius_square = SeriesNumber::from_f64(sphere.radius()).square();
-    // The coefficient of e^k: i + j = k.
-    let coefficient = |k: usize| {
-        (0..4).filter(|&i| k >= i && k - i < 4).fold(SeriesNumber::ZERO, |sum, i| {
-            let j = k - i;
-            sum + &dot(&directions[i], &directions[j]) * &radius_square - dot(&products[i], &products[j])
-        })
-    };
-    (1..=6).map(|k| coefficient(k).sign()).find(|sign| sign.is_ne()).unwrap_or(Ordering::Equal)
+fn turned_delta(sphere: &Sphere, ray: &Ray) -> Ordering {
+    let turned = Turned::new(ray);
+    let Globe { b, c } = turned.globe(sphere);
+    sign(|k| product(&b, &b, k) - turned.a(k) * &c)
 }
 
 /// A crossing of a place, as the walk finds it.
@@ -133,133 +119,146 @@ pub(crate) fn sort(crossings: &mut [Crossing], ray: &Ray, shape: impl Fn(usize) 
     });
 }
 
-/// Which of two crossings, of which the `t` rounds to the same double, comes first on the turned ray. Where two surfaces
-/// touch, of which one is a sphere, the lower index; where they are the same, entering before leaving.
+/// Which of two crossings, of which the `t` rounds to the same double, comes first on the turned ray; by index where
+/// they stay together.
 #[cold]
 #[inline(never)]
 fn exact_order(ray: &Ray, (a, first): (&Shape, &Crossing), (b, second): (&Shape, &Crossing)) -> Ordering {
-    let by_index = first.index.cmp(&second.index).then(second.entering.cmp(&first.entering));
+    let by_index = first.index.cmp(&second.index);
     if first.index == second.index || a == b {
         // The near root of a sphere comes first, also where both round to the same double.
-        return second.entering.cmp(&first.entering).then(first.index.cmp(&second.index));
+        return second.entering.cmp(&first.entering).then(by_index);
     }
+    let turned = Turned::new(ray);
     let order = match (a, b) {
-        (Shape::Triangle(a), Shape::Triangle(b)) => order_of_triangles(ray, a, b),
-        _ => {
-            let [a, b] =
-                [(a, first), (b, second)].map(|(shape, crossing)| Parameter::new(ray, shape, crossing.entering));
-            a.compare(&b)
+        (Shape::Triangle(a), Shape::Triangle(b)) => order_of_planes(&turned.plane(a), &turned.plane(b)),
+        (Shape::Sphere(a), Shape::Triangle(b)) => turned.root_against_plane(&turned.globe(a), first, &turned.plane(b)),
+        (Shape::Triangle(a), Shape::Sphere(b)) => {
+            turned.root_against_plane(&turned.globe(b), second, &turned.plane(a)).reverse()
+        }
+        (Shape::Sphere(a), Shape::Sphere(b)) => {
+            turned.order_of_roots((&turned.globe(a), first), (&turned.globe(b), second))
         }
     };
     order.then(by_index)
 }
 
-/// Compares `h / s(e)` of two triangles: the first power of `e` in which `h₁ s₂(e)` and `h₂ s₁(e)` differ decides.
-fn order_of_triangles(ray: &Ray, a: &Triangle, b: &Triangle) -> Ordering {
-    let series = |triangle: &Triangle| {
-        let (normal, height) = normal_and_height(ray, triangle);
-        let slope = dot(&normal, &ray.direction().to_array().map(Number::from_f64));
-        let [x, y, z] = normal;
-        (height, [slope, x, y, z])
-    };
-    let ((h, s), (g, q)) = (series(a), series(b));
-    let difference = (0..4).map(|k| (&h * &q[k]).cmp(&(&g * &s[k]))).find(|order| order.is_ne());
-    let order = difference.unwrap_or(Ordering::Equal);
-    if s[0].sign() == q[0].sign() { order } else { order.reverse() }
+/// A polynomial in `e`; its sign, for an infinitely small `e > 0`, is that of the first coefficient that is not zero.
+type Series = [Number; 4];
+
+/// The coefficient of `e^k` in a product.
+fn product(x: &Series, y: &Series, k: usize) -> Number {
+    (0..4).filter(|&i| k >= i && k - i < 4).fold(Number::ZERO, |sum, i| sum + &x[i] * &y[k - i])
 }
 
-/// The product of the edges, and `N.(a - o)`.
-fn normal_and_height(ray: &Ray, triangle: &Triangle) -> ([Number; 3], Number) {
-    let [a, b, c] = triangle.vertices();
-    let normal = cross(&difference::<Number>(b, a), &difference(c, a));
-    let height = dot(&normal, &difference(a, ray.origin()));
-    (normal, height)
+/// The sign of a series of degree six at most, by its coefficients.
+fn sign(coefficient: impl Fn(usize) -> Number) -> Ordering {
+    (0..=6).map(|k| coefficient(k).sign()).find(|sign| sign.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// An exact `t`: `(p + root) / q` with `q > 0`, where `root` is the square root of `square`, with a sign.
-struct Parameter {
-    p: Number,
-    sign: Ordering,
-    square: Number,
-    q: Number,
+fn sign_of(series: &Series) -> Ordering {
+    series.iter().map(Dyadic::sign).find(|sign| sign.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-impl Parameter {
-    fn new(ray: &Ray, shape: &Shape, entering: bool) -> Self {
-        let d = ray.direction().to_array().map(Number::from_f64);
-        match shape {
-            Shape::Sphere(sphere) => {
-                let w = difference::<Number>(ray.origin(), sphere.center());
-                let (a, b, x) = (dot(&d, &d), dot(&w, &d), cross(&w, &d));
-                let square = &a * &Number::from_f64(sphere.radius()).square() - dot(&x, &x);
-                let sign = if square.sign().is_eq() {
-                    Ordering::Equal
-                } else if entering {
-                    Ordering::Less
-                } else {
-                    Ordering::Greater
-                };
-                Self { p: -b, sign, square, q: a }
-            }
-            Shape::Triangle(triangle) => {
-                let (normal, height) = normal_and_height(ray, triangle);
-                let slope = dot(&normal, &d);
-                let (p, q) = if slope.sign() == Ordering::Less { (-height, -slope) } else { (height, slope) };
-                Self { p, sign: Ordering::Equal, square: Number::ZERO, q }
-            }
-        }
+/// A plane, crossed at `t = h / s(e)`.
+struct Plane {
+    h: Number,
+    s: Series,
+}
+
+/// A sphere, met where `a(e) t² + 2 b(e) t + c = 0`.
+struct Globe {
+    b: Series,
+    c: Number,
+}
+
+/// The first power of `e` in which `h₁ s₂(e)` and `h₂ s₁(e)` differ decides.
+fn order_of_planes(first: &Plane, second: &Plane) -> Ordering {
+    let mut differences = (0..4).map(|k| (&first.h * &second.s[k]).cmp(&(&second.h * &first.s[k])));
+    let order = differences.find(|order| order.is_ne()).unwrap_or(Ordering::Equal);
+    if sign_of(&first.s) == sign_of(&second.s) { order } else { order.reverse() }
+}
+
+/// The turned direction `d + X e + Y e² + Z e³` and the ray's origin.
+struct Turned {
+    origin: DVec3,
+    directions: [[Number; 3]; 4],
+}
+
+impl Turned {
+    fn new(ray: &Ray) -> Self {
+        let directions = [ray.direction(), DVec3::X, DVec3::Y, DVec3::Z];
+        Self { origin: ray.origin(), directions: directions.map(|v| v.to_array().map(Number::from_f64)) }
     }
 
-    /// The sign of the difference times both divisors: `x + root - other`.
-    fn compare(&self, other: &Self) -> Ordering {
-        // Two spheres have the same divisor.
-        let same = self.q == other.q;
-        let times = |number: &Number, q: &Number| if same { number.clone() } else { number * q };
-        let x = times(&self.p, &other.q) - times(&other.p, &self.q);
-        let scaled = |square: &Number, q: &Number| if same { square.clone() } else { square * &q.square() };
-        let (square, other_square) = (scaled(&self.square, &other.q), scaled(&other.square, &self.q));
-        sign_of_sum(&x, (self.sign, &square), (other.sign.reverse(), &other_square))
+    fn plane(&self, triangle: &Triangle) -> Plane {
+        let [a, b, c] = triangle.vertices();
+        let normal = cross(&difference::<Number>(b, a), &difference(c, a));
+        let h = dot(&normal, &difference(a, self.origin));
+        Plane { h, s: self.directions.each_ref().map(|d| dot(&normal, d)) }
     }
-}
 
-/// The sign of `x ± √a ± √b`; the sign `Equal` stands for a root that is zero.
-fn sign_of_sum(x: &Number, (sign_a, a): (Ordering, &Number), (sign_b, b): (Ordering, &Number)) -> Ordering {
-    // The sign of the two roots together.
-    let roots = match (sign_a, sign_b) {
-        (sign, Ordering::Equal) | (Ordering::Equal, sign) => sign,
-        (sign, other) if sign == other => sign,
-        (sign, _) => match a.cmp(b) {
-            Ordering::Less => sign.reverse(),
+    fn globe(&self, sphere: &Sphere) -> Globe {
+        let w = difference::<Number>(self.origin, sphere.center());
+        let c = dot(&w, &w) - Number::from_f64(sphere.radius()).square();
+        Globe { b: self.directions.each_ref().map(|d| dot(&w, d)), c }
+    }
+
+    /// The coefficient of `e^k` in `a(e)`, the square of the direction.
+    fn a(&self, k: usize) -> Number {
+        let d = &self.directions;
+        (0..4).filter(|&i| k >= i && k - i < 4).fold(Number::ZERO, |sum, i| sum + dot(&d[i], &d[k - i]))
+    }
+
+    /// Where a root of a sphere lies on the turned ray with regard to a plane.
+    ///
+    /// With `F` the sphere's equation, `s² F(h/s)` tells whether the plane is crossed between the roots, and else
+    /// `s (a h + b s)` whether beyond their middle.
+    fn root_against_plane(&self, globe: &Globe, root: &Crossing, plane: &Plane) -> Ordering {
+        let (Globe { b, c }, Plane { h, s }) = (globe, plane);
+        let (h_square, twice_h) = (h.square(), h.scale(1));
+        let outside = sign(|k| self.a(k) * &h_square + &twice_h * &product(b, s, k) + c * &product(s, s, k));
+        let beyond = sign(|k| self.a(k) * h + product(b, s, k));
+        let beyond = if sign_of(s).is_lt() { beyond.reverse() } else { beyond };
+        of_root(root.entering, outside, beyond)
+    }
+
+    /// Which of two roots comes first. The spheres' equations differ by `2 (b₁ - b₂) t + c₁ - c₂`, which is a plane's;
+    /// so on which side of it the second root lies tells whether it lies between the roots of the first sphere.
+    fn order_of_roots(&self, (first, root): (&Globe, &Crossing), (second, other): (&Globe, &Crossing)) -> Ordering {
+        let b: Series = [0, 1, 2, 3].map(|k| &first.b[k] - &second.b[k]);
+        let rest = &first.c - &second.c;
+        let slope = sign_of(&b);
+        let outside = if slope.is_eq() {
+            rest.sign()
+        } else {
+            let plane = Plane { h: -rest, s: b.each_ref().map(|part| part.scale(1)) };
+            let side = self.root_against_plane(second, other, &plane);
+            if slope.is_lt() { side.reverse() } else { side }
+        };
+        // a t₂ + b₁ is b₁ - b₂ ∓ √Δ₂, where Δ₂ is b₂² - a c₂.
+        let side = if other.entering { Ordering::Less } else { Ordering::Greater };
+        let larger = sign(|k| product(&b, &b, k) - product(&second.b, &second.b, k) + self.a(k) * &second.c);
+        let beyond = match larger {
+            _ if slope.is_eq() || slope == side => side,
+            Ordering::Greater => slope,
             Ordering::Equal => Ordering::Equal,
-            Ordering::Greater => sign,
-        },
-    };
-    match (x.sign(), roots) {
-        (sign, Ordering::Equal) | (Ordering::Equal, sign) => sign,
-        (sign, other) if sign == other => sign,
-        // Of opposite signs: x² against a + b ± 2 √(a b).
-        (sign, _) => {
-            let rest = x.square() - a - b;
-            let product = (a * b).scale(2);
-            let doubled = if product.sign().is_eq() {
-                Ordering::Equal
-            } else if sign_a == sign_b {
-                Ordering::Greater
-            } else {
-                Ordering::Less
-            };
-            let larger = match (rest.sign(), doubled) {
-                (sign, Ordering::Equal) => sign,
-                (Ordering::Equal, doubled) => doubled.reverse(),
-                (sign, doubled) if sign != doubled => sign,
-                (Ordering::Greater, _) => rest.square().cmp(&product),
-                _ => product.cmp(&rest.square()),
-            };
-            match larger {
-                Ordering::Greater => sign,
-                Ordering::Equal => Ordering::Equal,
-                Ordering::Less => sign.reverse(),
-            }
-        }
+            Ordering::Less => side,
+        };
+        of_root(root.entering, outside, beyond)
+    }
+}
+
+/// Where the near or the far root of a sphere lies with regard to a place that is outside of it (`Greater`), on it or
+/// inside, and beyond the middle of the roots (`Greater`) or before it.
+fn of_root(near: bool, outside: Ordering, beyond: Ordering) -> Ordering {
+    match (outside, near) {
+        (Ordering::Less, true) => Ordering::Less,
+        (Ordering::Less, false) => Ordering::Greater,
+        (Ordering::Greater, _) => beyond.reverse(),
+        // The place is the root of its half.
+        (Ordering::Equal, true) if beyond.is_gt() => Ordering::Less,
+        (Ordering::Equal, false) if beyond.is_lt() => Ordering::Greater,
+        (Ordering::Equal, _) => Ordering::Equal,
     }
 }

@@ -197,7 +197,7 @@ impl Bvh {
     ///
     /// Entering and leaving alternate for each closed surface, however the ray as given passes through edges, vertices
     /// and along faces. An origin on a surface is judged just ahead of it on the turned ray. A sphere of radius 0 is
-    /// never crossed. Where a sphere and another surface touch at the very crossing, the lower index comes first.
+    /// never crossed. Crossings that stay together on the turned ray, as those of equal primitives, come by index.
     ///
     /// ```
     /// use glam::DVec3;
@@ -286,7 +286,12 @@ impl List {
         shapes.enumerate().for_each(|(index, shape)| ask(index, shape));
     }
 
-    fn shape(&self, index: usize) -> Shape {
+    /// What [`Bvh::shape`] returns.
+    ///
+    /// # Panics
+    /// If there is no such primitive.
+    #[must_use]
+    pub fn shape(&self, index: usize) -> Shape {
         match self.spheres.get(index) {
             Some(&sphere) => Shape::Sphere(sphere),
             None => Shape::Triangle(self.triangles[index - self.spheres.len()]),
