@@ -1,7 +1,8 @@
 //! Spheres, triangles and the minimal bounding-sphere tree, with exact verdicts.
 //!
 //! What a ray hits, how often, on which side a point lies: decided as in real arithmetic on the doubles given, for every
-//! finite input. A `t` that is returned is the double nearest to the exact one.
+//! finite input. A `t` that is returned is the double nearest to the exact one. A vector is taken as a [`glam::DVec3`] or
+//! as three numbers, `[f64; 3]`, into which `to_array` turns an answer.
 //!
 //! ```
 //! use rt_geom::{AHEAD, Bvh, Hit, Ray, Side, Sphere};
@@ -15,7 +16,7 @@
 //! // The exact point of the hit: from the center, its normal, the side of a light.
 //! let point = tree.shape(hit.index).hit_point(&ray, hit.t);
 //! assert_eq!(point.normal().vector.to_array(), [0.0, 0.0, 1.0]);
-//! assert!(point.faces_ray() && point.side_of([0.0, 5.0, 1.0].into()).is_gt());
+//! assert!(point.faces_ray() && point.side_of([0.0, 5.0, 1.0]).is_gt());
 //!
 //! assert_eq!(tree.contains([0.0, 0.0, -3.5]), Side::Inside);
 //! ```

@@ -10,6 +10,14 @@ use rt_math::exact::power_of_two;
 ///
 /// The direction need not be a unit vector: `t` counts in units of it, and nothing normalises it behind the
 /// caller's back, because that would move the ray.
+///
+/// ```
+/// use rt_geom::{AHEAD, Ray, Sphere};
+///
+/// let ray = Ray::new([1.0, 0.0, 0.0], [0.0, 0.0, -0.5]).unwrap();
+/// let t = Sphere::new([1.0, 0.0, -3.0], 1.0).unwrap().closest(&ray, AHEAD).unwrap();
+/// assert_eq!((t, ray.at(t).to_array()), (4.0, [1.0, 0.0, -2.0]));
+/// ```
 // In an order in which no pair of coordinates straddles two pairs that are written together: reading such a pair soon
 // after stalls until the stores have reached the cache.
 #[derive(Clone, Copy)]

@@ -126,16 +126,19 @@ impl Pixmap {
     }
 
     /// Number of columns, at least 1.
+    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Number of rows, at least 1.
+    #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// The sample value of full intensity, in `1..=65535`.
+    #[must_use]
     pub fn maxval(&self) -> u16 {
         self.maxval
     }
@@ -144,6 +147,7 @@ impl Pixmap {
     ///
     /// # Panics
     /// If `x >= width` or `y >= height`.
+    #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> [u16; 3] {
         assert!(x < self.width && y < self.height, "pixel ({x}, {y}) of a {} x {} picture", self.width, self.height);
         let start = self.channels * (y * self.width + x);
@@ -155,6 +159,7 @@ impl Pixmap {
     }
 
     /// All samples, interleaved red, green, blue, row by row from the top.
+    #[must_use]
     pub fn to_samples(&self) -> Vec<u16> {
         let repeated = 3 / self.channels;
         match &self.samples {
@@ -168,6 +173,7 @@ impl Pixmap {
     }
 
     /// All samples as [`to_samples`](Self::to_samples) gives them, without a copy where they are stored so already.
+    #[must_use]
     pub fn into_samples(self) -> Vec<u16> {
         match self.samples {
             Samples::Sixteen(samples) if self.channels == 3 => samples,
@@ -177,6 +183,7 @@ impl Pixmap {
 
     /// The samples as they are stored, which takes no memory: RGB interleaved, row by row from the top, or one a pixel
     /// where the picture came from a grey file.
+    #[must_use]
     pub fn into_stored(self) -> Samples {
         self.samples
     }
@@ -314,6 +321,6 @@ mod tests {
     #[test]
     #[should_panic(expected = "pixel (2, 0) of a 2 x 1 picture")]
     fn a_pixel_outside_panics_with_its_place() {
-        Pixmap::new(2, 1, 255, vec![0; 6]).unwrap().pixel(2, 0);
+        let _ = Pixmap::new(2, 1, 255, vec![0; 6]).unwrap().pixel(2, 0);
     }
 }

@@ -1,7 +1,8 @@
 //! Reflection, pseudo-inverse and quadratic solving on glam's f64 vectors.
 //!
 //! The number of roots and the rank are exact, and every value returned is the double nearest to the exact result for
-//! the doubles given. No function allocates, loops without bound, or panics on any bit pattern.
+//! the doubles given. No function allocates, loops without bound, or panics on any bit pattern. A vector is taken as a
+//! [`glam::DVec3`] or as three numbers, `[f64; 3]`, into which `to_array` turns an answer.
 //!
 //! ```
 //! use rt_math::{Roots, solve_quadratic};

@@ -25,8 +25,8 @@ pub fn interpolate(colors: &[DVec3; 3], barycentric: [f64; 3]) -> DVec3 {
 
 /// Returns the colour with each channel brought into `0..=1`; NaN becomes 0, an infinity the end on its side.
 #[must_use]
-pub fn clamp(color: DVec3) -> DVec3 {
-    DVec3::from_array(color.to_array().map(clamp_channel))
+pub fn clamp(color: impl Into<DVec3>) -> DVec3 {
+    DVec3::from_array(color.into().to_array().map(clamp_channel))
 }
 
 /// Returns the sample that stores the channel `c`: `⌊maxval c + ½⌋` of `c` clamped to `0..=1`, exactly for the double

@@ -1,6 +1,7 @@
 //! Phong shading, the mapping of textures onto spheres, and colours. Knows no shapes.
 //!
-//! Colours are linear RGB in a [`glam::DVec3`], 1.0 = full; nothing applies a gamma. Every result is the same
+//! Colours are linear RGB in a [`glam::DVec3`], 1.0 = full; nothing applies a gamma. Functions take a vector also as
+//! three numbers, `[f64; 3]`, into which `to_array` turns an answer. Every result is the same
 //! bits on every platform: only additions, multiplications, divisions and square roots are used, which IEEE 754
 //! rounds correctly, and no function of the system's mathematics library.
 //!

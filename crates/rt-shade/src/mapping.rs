@@ -46,8 +46,8 @@ use crate::power::power_of_two;
 /// ```
 #[inline]
 #[must_use]
-pub fn sphere_uv(normal: DVec3) -> (f64, f64) {
-    let DVec3 { x, y, z } = normal;
+pub fn sphere_uv(normal: impl Into<DVec3>) -> (f64, f64) {
+    let DVec3 { x, y, z } = normal.into();
     if [x, y, z].into_iter().all(is_moderate) {
         (longitude(x, z), latitude(Hypotenuse::new(x, z), y))
     } else {
@@ -61,17 +61,16 @@ pub fn sphere_uv(normal: DVec3) -> (f64, f64) {
 /// read at `1 - u`, or with `mirrored` at `u` itself. `1 - u` is the `u` of the normal with `z` negated, and as exact.
 ///
 /// ```
-/// use glam::DVec3;
 /// use rt_shade::texture_uv;
 ///
-/// let normal = DVec3::new(1.0, 0.0, 1.0);
+/// let normal = [1.0, 0.0, 1.0];
 /// assert_eq!(texture_uv(normal, true), (0.625, 0.5));
 /// assert_eq!(texture_uv(normal, false), (0.375, 0.5));
 /// ```
 #[must_use]
-pub fn texture_uv(normal: DVec3, mirrored: bool) -> (f64, f64) {
-    let DVec3 { x, y, z } = normal;
-    sphere_uv(if mirrored { normal } else { DVec3::new(x, y, -z) })
+pub fn texture_uv(normal: impl Into<DVec3>, mirrored: bool) -> (f64, f64) {
+    let DVec3 { x, y, z } = normal.into();
+    sphere_uv([x, y, if mirrored { z } else { -z }])
 }
 
 /// Returns what [`texture_uv`] returns for a normal that may be off by a vector of length `error`, and bounds of the
@@ -80,7 +79,8 @@ pub fn texture_uv(normal: DVec3, mirrored: bool) -> (f64, f64) {
 /// An angle is off by at most `1.01 e / h` where the direction is off by `e` beside its length `h`; in shares of a turn,
 /// and of half a turn, `docs/numerics.md`, section 14, has the proof.
 #[must_use]
-pub fn texture_uv_within(normal: DVec3, error: f64, mirrored: bool) -> ((f64, f64), (f64, f64)) {
+pub fn texture_uv_within(normal: impl Into<DVec3>, error: f64, mirrored: bool) -> ((f64, f64), (f64, f64)) {
+    let normal = normal.into();
     let coordinates = texture_uv(normal, mirrored);
     let h_square = normal.x * normal.x + normal.z * normal.z;
     let length_square = h_square + normal.y * normal.y;

@@ -126,7 +126,14 @@ pub trait Sides {
 impl<'a> SurfacePoint<'a> {
     /// Returns the point with these vectors and this colour, all exact; [`SurfacePoint`] explains them.
     #[must_use]
-    pub fn new(point: DVec3, direction: DVec3, normal: DVec3, surface: DVec3, material: &'a Material) -> Self {
+    pub fn new(
+        point: impl Into<DVec3>,
+        direction: impl Into<DVec3>,
+        normal: impl Into<DVec3>,
+        surface: impl Into<DVec3>,
+        material: &'a Material,
+    ) -> Self {
+        let (point, direction, normal, surface) = (point.into(), direction.into(), normal.into(), surface.into());
         let (offset, errors) = (DVec3::ZERO, Errors::default());
         Self { point, offset, direction, normal, surface, material, errors }
     }

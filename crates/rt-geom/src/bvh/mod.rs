@@ -33,6 +33,19 @@ use walk::cast;
 /// answers. However different sizes and distances are, each part of the scene is bounded as finely as if it were alone.
 /// A ray that starts beyond 2^42 radii from such a part, or whose direction is so long or so short that one unit of `t`
 /// in radii of it is not a normal double, meets all of it once it meets its box.
+///
+/// ```
+/// use rt_geom::{AHEAD, Bvh, Hit, Ray, Sphere, Triangle};
+///
+/// let ball = Sphere::new([0.0, 0.0, 5.0], 1.0).unwrap();
+/// let wall = Triangle::new([-9.0, -9.0, 9.0], [9.0, -9.0, 9.0], [0.0, 9.0, 9.0]).unwrap();
+/// let tree = Bvh::new(vec![ball], vec![wall]);
+///
+/// let ray = Ray::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap();
+/// assert_eq!(tree.closest(&ray, AHEAD), Some(Hit { index: 0, t: 4.0 }));
+/// assert_eq!(tree.closest(&ray, 7.0..f64::INFINITY), Some(Hit { index: 1, t: 9.0 }));
+/// assert!(!tree.any(&ray, 0.0..4.0));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Bvh {
     leaves: Leaves,

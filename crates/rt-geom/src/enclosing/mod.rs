@@ -71,6 +71,14 @@ impl Enclosing {
 /// Returns the minimal sphere that encloses all `spheres`.
 ///
 /// `None` if there are none, or if no sphere with a finite double radius encloses them.
+///
+/// ```
+/// use rt_geom::{Sphere, enclosing_sphere};
+///
+/// let ball = |x, radius| Sphere::new([x, 0.0, 0.0], radius).unwrap();
+/// let found = enclosing_sphere(&[ball(-3.0, 1.0), ball(0.5, 2.0), ball(2.0, 2.0)]).unwrap();
+/// assert_eq!((found.sphere, found.support()), (ball(0.0, 4.0), &[0, 2][..]));
+/// ```
 #[must_use]
 pub fn enclosing_sphere(spheres: &[Sphere]) -> Option<Enclosing> {
     enclosing_at(Level::new(), spheres)

@@ -163,7 +163,8 @@ impl Sphere {
     /// assert_eq!(sphere.side(DVec3::new(1.0, 2.0, 2f64.next_up())), Side::Outside);
     /// ```
     #[must_use]
-    pub fn side(&self, point: DVec3) -> Side {
+    pub fn side(&self, point: impl Into<DVec3>) -> Side {
+        let point = point.into();
         let w = point - self.center;
         let (square, radius_square) = (w.length_squared(), self.radius * self.radius);
         let excess = square - radius_square;
@@ -183,7 +184,8 @@ impl Sphere {
     /// (proved); a point that is off the surface by `e` turns it by `e / radius` more. At the center itself, so for
     /// radius 0, there is no normal: the answer is NaN.
     #[must_use]
-    pub fn normal(&self, point: DVec3) -> DVec3 {
+    pub fn normal(&self, point: impl Into<DVec3>) -> DVec3 {
+        let point = point.into();
         let w = point - self.center;
         let w = if w.is_finite() { w } else { 0.5 * point - 0.5 * self.center };
         let largest = max_abs(w);

@@ -81,7 +81,8 @@ impl<'a> EnclosedHit<'a> {
 
     /// Encloses the vector from a finite point to the hit, with `64 LIMBS` bits.
     #[must_use]
-    pub fn from<const LIMBS: usize>(&self, point: DVec3) -> [Ball<LIMBS>; 3] {
+    pub fn from<const LIMBS: usize>(&self, point: impl Into<DVec3>) -> [Ball<LIMBS>; 3] {
+        let point = point.into();
         let w = || difference::<Number>(self.ray.origin(), point);
         let d = direction(self.ray);
         match &self.surface {

@@ -104,13 +104,14 @@ impl<'a> HitPoint<'a> {
     /// underflows at most `2^-1074` more. A component beyond the largest double is infinite, with an infinite error. A
     /// point that is not finite gives NaN. `docs/numerics.md`, section 14, has the proof.
     #[must_use]
-    pub fn from(&self, point: DVec3) -> Bounded {
+    pub fn from(&self, point: impl Into<DVec3>) -> Bounded {
         self.from_within(point, FEW_ULP)
     }
 
     /// [`from`](Self::from) in less time, where an error of `tolerance` times the length is good enough.
     #[must_use]
-    pub fn from_within(&self, point: DVec3, tolerance: f64) -> Bounded {
+    pub fn from_within(&self, point: impl Into<DVec3>, tolerance: f64) -> Bounded {
+        let point = point.into();
         if let Some(found) = finish::from(self, point)
             && found.error <= tolerance * found.vector.length()
         {
@@ -170,7 +171,8 @@ impl<'a> HitPoint<'a> {
     /// assert!(hit.faces_ray() == (hit.side_of(ray.origin()) == Ordering::Greater));
     /// ```
     #[must_use]
-    pub fn side_of(&self, point: DVec3) -> Ordering {
+    pub fn side_of(&self, point: impl Into<DVec3>) -> Ordering {
+        let point = point.into();
         if !point.is_finite() {
             return Ordering::Equal;
         }

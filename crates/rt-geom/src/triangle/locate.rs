@@ -53,7 +53,8 @@ pub enum PointInTriangle {
 /// assert_eq!(inside_triangle(DVec3::ONE, &triangle), PointInTriangle::Outside);
 /// ```
 #[must_use]
-pub fn inside_triangle(point: DVec3, triangle: &Triangle) -> PointInTriangle {
+pub fn inside_triangle(point: impl Into<DVec3>, triangle: &Triangle) -> PointInTriangle {
+    let point = point.into();
     if !point.is_finite() {
         return PointInTriangle::Outside;
     }
@@ -85,7 +86,8 @@ impl Triangle {
     /// assert_eq!(triangle.barycentric(DVec3::new(0.25, 0.5, 9.0)), Some([0.25, 0.25, 0.5]));
     /// ```
     #[must_use]
-    pub fn barycentric(&self, point: DVec3) -> Option<[f64; 3]> {
+    pub fn barycentric(&self, point: impl Into<DVec3>) -> Option<[f64; 3]> {
+        let point = point.into();
         if !point.is_finite() || self.is_degenerate() {
             return None;
         }
@@ -96,7 +98,8 @@ impl Triangle {
     ///
     /// Any point is coplanar with a degenerate triangle.
     #[must_use]
-    pub fn is_coplanar(&self, point: DVec3) -> bool {
+    pub fn is_coplanar(&self, point: impl Into<DVec3>) -> bool {
+        let point = point.into();
         point.is_finite() && coplanar(point, self)
     }
 }
@@ -114,7 +117,8 @@ impl Triangle {
     /// assert!(triangle.holds(DVec3::new(0.5, 0.5, 0.0)) && !triangle.holds(DVec3::new(0.5, 0.5, 1e-300)));
     /// ```
     #[must_use]
-    pub fn holds(&self, point: DVec3) -> bool {
+    pub fn holds(&self, point: impl Into<DVec3>) -> bool {
+        let point = point.into();
         let [a, b, c] = self.vertices();
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let near = point.cmpge(low).all() && point.cmple(high).all();
