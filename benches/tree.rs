@@ -4,9 +4,8 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use oracle::Random;
-use rt_geom::{Bvh, Ray, Sphere, SphereTree};
+use rt_geom::{AHEAD, Bvh, Ray, Sphere, SphereTree};
 
-const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 const RAYS: usize = 1024;
 
 /// Spheres that fill a tenth of a cube of side 2, and rays from within it.

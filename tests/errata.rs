@@ -1,11 +1,9 @@
 //! Each slip of the report that `docs/errata.md` lists stays corrected.
 
 use glam::DVec3;
-use rt_geom::{Bvh, PointInTriangle, Ray, Sphere, Triangle, inside_triangle, plane_by_pseudo_inverse};
+use rt_geom::{AHEAD, Bvh, PointInTriangle, Ray, Sphere, Triangle, inside_triangle, plane_by_pseudo_inverse};
 use rt_math::{Roots, reflect};
 use rt_shade::{Material, PointLight, SurfacePoint, Texture, phong, sphere_uv, texture_uv};
-
-const AHEAD: std::ops::Range<f64> = 0.0..f64::INFINITY;
 
 fn sphere(x: f64, y: f64, z: f64, radius: f64) -> Sphere {
     Sphere::new(DVec3::new(x, y, z), radius).expect("the numbers of the test are valid")
@@ -122,7 +120,7 @@ fn the_boundary_belongs_to_the_triangle() {
     for (point, inside) in
         [([1.0, 1.0, 0.0], true), ([2.0, 2.0, 0.0], true), ([4.0, 0.0, 0.0], true), ([3.0, 2.0, 0.0], false)]
     {
-        let verdict = inside_triangle(point.into(), &flat);
+        let verdict = inside_triangle(point, &flat);
         assert_eq!(!matches!(verdict, PointInTriangle::Outside), inside, "{point:?} is {verdict:?}");
     }
 }

@@ -1,12 +1,7 @@
 //! The objects of a scene behind one of the ways to find what a ray hits. All give the same answers, bit for bit.
 
-use std::ops::Range;
-
 use clap::ValueEnum;
-use rt_geom::{Bvh, Hit, Ray, Shape, Sphere, SphereTree, Triangle, Visits};
-
-/// The ray's own range: from its origin on, without end.
-pub const AHEAD: Range<f64> = 0.0..f64::INFINITY;
+use rt_geom::{AHEAD, Bvh, Hit, List, Ray, Shape, Sphere, SphereTree, Triangle, Visits};
 
 /// How the object that a ray hits is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -26,7 +21,7 @@ pub enum Method {
 #[derive(Debug)]
 pub enum Objects {
     /// As listed.
-    Loop(Vec<Sphere>, Vec<Triangle>),
+    Loop(List),
     /// The report's tree, over either order.
     SphereTree(SphereTree),
     /// The fast tree.
@@ -37,7 +32,7 @@ impl Objects {
     /// Builds what the method needs.
     pub fn new(method: Method, spheres: Vec<Sphere>, triangles: Vec<Triangle>) -> Self {
         match method {
-            Method::Loop => Self::Loop(spheres, triangles),
+            Method::Loop => Self::Loop(List { spheres, triangles }),
             Method::Halves => Self::SphereTree(SphereTree::new(spheres, triangles)),
             Method::Sorted => Self::SphereTree(SphereTree::sorted(spheres, triangles)),
             Method::Bvh => Self::Bvh(Bvh::new(spheres, triangles)),
@@ -47,10 +42,7 @@ impl Objects {
     /// The object with this index: spheres as listed, then triangles as listed.
     pub fn shape(&self, index: usize) -> Shape {
         match self {
-            Self::Loop(spheres, triangles) => match spheres.get(index) {
-                Some(&sphere) => Shape::Sphere(sphere),
-                None => Shape::Triangle(triangles[index - spheres.len()]),
-            },
+            Self::Loop(list) => list.shape(index),
             Self::SphereTree(tree) => tree.shape(index),
             Self::Bvh(tree) => tree.shape(index),
         }
@@ -68,14 +60,9 @@ impl Objects {
     /// The closest hit of a ray, and what it took to find it.
     pub fn closest_counted(&self, ray: &Ray) -> (Option<Hit>, Visits) {
         match self {
-            Self::Loop(spheres, triangles) => {
-                let tests = spheres.len() + triangles.len();
-                let spheres = spheres.iter().map(|sphere| sphere.closest(ray, AHEAD));
-                let all = spheres.chain(triangles.iter().map(|triangle| triangle.closest(ray, AHEAD)));
-                let hits = all.enumerate().filter_map(|(index, t)| Some(Hit { index, t: t? }));
-                // The first of equal hits is kept: the lower index.
-                let hit = hits.reduce(|best, hit| if hit.t < best.t { hit } else { best });
-                (hit, Visits { nodes: 0, tests })
+            Self::Loop(list) => {
+                let tests = list.spheres.len() + list.triangles.len();
+                (list.closest(ray, AHEAD), Visits { nodes: 0, tests })
             }
             Self::SphereTree(tree) => tree.closest_counted(ray, AHEAD),
             Self::Bvh(tree) => tree.closest_counted(ray, AHEAD),

@@ -9,10 +9,9 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
 
-use figures::objects::AHEAD;
 use glam::DVec3;
 use pxfm::f_cbrt;
-use rt_geom::{Bvh, Hit, Ray, Sphere, SphereTree};
+use rt_geom::{AHEAD, Bvh, Hit, Ray, Sphere, SphereTree};
 use serde::{Deserialize, Serialize};
 
 use super::labels::Labels;

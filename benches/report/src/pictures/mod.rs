@@ -19,11 +19,10 @@ use base64::prelude::BASE64_STANDARD;
 use figures::camera::{Size, View};
 use figures::figure::FIGURES;
 use figures::generate::sphereflake;
-use figures::objects::AHEAD;
 use figures::render::Renderer;
 use figures::scene::{Look, Scene};
 use figures::scene_file;
-use rt_geom::{Bvh, Hit, Ray, Sphere};
+use rt_geom::{AHEAD, Bvh, Hit, Ray, Sphere};
 
 use super::measure::{Effort, take_turns};
 use super::progress::progress;
