@@ -4,20 +4,21 @@
 //! error of zero has its own column at the left, NaN one at the right; the scale between them is logarithmic. A method
 //! is hollow if another is no worse in time, both errors and wrong verdicts; those that no other beats in time and
 //! ordinary error are joined. A triangle marks wrong verdicts, a whisker leads from the least time to the 95th
-//! percentile. Blue and orange are Okabe and Ito's, distinct for colour-blind readers too; colours follow the reader's
-//! light or dark setting.
+//! percentile. Marks have numbers, and the key below names them. Blue and orange are Okabe and Ito's, distinct for
+//! colour-blind readers too; colours follow the reader's light or dark setting.
 
 use std::fmt::Write;
 
 use super::labels::Labels;
 use super::measure::{Errors, Kernel, Measured, NAN_DISTANCE};
-use super::svg::{HEIGHT, LEFT, WIDTH, percent, style};
+use super::svg::{LEFT, RIGHT, caption, key, key_height, percent, power_of_ten, shape, style, upward};
 
-const RIGHT: f64 = 24.0;
-const TOP: f64 = 44.0;
-const BOTTOM: f64 = 66.0;
+const TOP: f64 = 36.0;
+const BOTTOM: f64 = 286.0;
 /// Width of the columns for zero and for NaN.
-const COLUMN: f64 = 60.0;
+const COLUMN: f64 = 38.0;
+/// Where the key begins.
+const KEY: f64 = BOTTOM + 104.0;
 
 /// A method's place in a diagram.
 struct PlotPoint<'a> {
@@ -40,9 +41,9 @@ struct PlotPoint<'a> {
 pub(super) fn work_precision(kernel: &Kernel) -> String {
     let by_share = kernel.values.is_none();
     let (decades, label) = if by_share {
-        ((0, 6), "wrong verdicts, per million: mark: ordinary cases, line: up to all classes")
+        ((0, 6), "wrong verdicts in a million")
     } else {
-        ((0, 19), "largest error in units of the last place: mark: ordinary cases, line: up to all classes")
+        ((0, 19), "largest error, in units of the last place")
     };
     let mut points: Vec<PlotPoint> = kernel
         .methods
@@ -73,7 +74,7 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
             })
         };
         let (dominated, on_front) = (beaten_in(&[0, 1, 2, 3]), !beaten_in(&[0, 1]));
-        let up = |time: f64| TOP + (HEIGHT - TOP - BOTTOM) * (high - time.log10()) / (high - low);
+        let up = |time: f64| TOP + (BOTTOM - TOP) * (high - time.log10()) / (high - low);
         let time = point.method.time();
         let (y, whisker) = (up(time.median), [time.least, time.p95.min(10f64.powf(high))].map(up));
         points[i] = PlotPoint { dominated, on_front, y, whisker, ..points[i] };
@@ -81,8 +82,8 @@ pub(super) fn work_precision(kernel: &Kernel) -> String {
 
     let mut svg = String::new();
     frame(&mut svg, kernel, decades, label, (low, high));
-    join_front(&mut svg, &points);
-    marks(&mut svg, &points);
+    let front = join_front(&mut svg, &points);
+    marks(&mut svg, &points, &front);
     svg.push_str("</svg>\n");
     svg
 }
@@ -93,11 +94,11 @@ fn share(errors: &Errors) -> f64 {
 
 /// Returns where an error is drawn.
 fn across(error: f64, (first, last): (i32, i32)) -> f64 {
-    let (start, end) = (LEFT + COLUMN, WIDTH - RIGHT - COLUMN);
+    let (start, end) = (LEFT + COLUMN, RIGHT - COLUMN);
     if error == 0.0 {
         LEFT + COLUMN / 2.0
     } else if error >= NAN_DISTANCE {
-        WIDTH - RIGHT - COLUMN / 2.0
+        RIGHT - COLUMN / 2.0
     } else {
         let part = (error.max(1.0).log10() - f64::from(first)) / f64::from(last - first);
         start + 8.0 + (end - start - 16.0) * part
@@ -105,19 +106,19 @@ fn across(error: f64, (first, last): (i32, i32)) -> f64 {
 }
 
 fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (low, high): (f64, f64)) {
-    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-    svg.push_str(&style(&kernel.name));
+    svg.push_str(&style(&kernel.name, KEY + key_height(kernel.methods.len())));
     // Writing to a string cannot fail.
+    let under = BOTTOM + 17.0;
     let (first, last) = decades;
     for decade in (first..=last).step_by(if last > 9 { 3 } else { 1 }) {
         let x = across(10f64.powi(decade), decades);
-        let text = if decade < 4 { format!("{}", 10i32.pow(decade.unsigned_abs())) } else { format!("1e{decade}") };
-        let _ = writeln!(svg, r#"<line class="grid" x1="{x:.1}" y1="{TOP}" x2="{x:.1}" y2="{bottom}"/>"#);
-        let _ = writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
+        let text = power_of_ten(decade);
+        let _ = writeln!(svg, r#"<line class="grid" x1="{x:.1}" y1="{TOP}" x2="{x:.1}" y2="{BOTTOM}"/>"#);
+        let _ = writeln!(svg, r#"<text class="small" x="{x:.1}" y="{under}" text-anchor="middle">{text}</text>"#);
     }
     for (text, x) in [("0", across(0.0, decades)), ("NaN", across(NAN_DISTANCE, decades))] {
         if text == "0" || last > 9 {
-            let _ = writeln!(svg, r#"<text x="{x:.1}" y="{:.1}" text-anchor="middle">{text}</text>"#, bottom + 18.0);
+            let _ = writeln!(svg, r#"<text class="small" x="{x:.1}" y="{under}" text-anchor="middle">{text}</text>"#);
         }
     }
     // Two or three lines within a decade would not show that the axis is logarithmic.
@@ -127,70 +128,61 @@ fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (l
         ticks.extend(digits.iter().map(|digit| digit * 10f64.powi(decade)));
     }
     for tick in ticks.into_iter().filter(|tick| (low..high).contains(&tick.log10())) {
-        let y = TOP + (bottom - TOP) * (high - tick.log10()) / (high - low);
-        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{right}" y2="{y:.1}"/>"#);
-        let _ = writeln!(svg, r#"<text x="{:.1}" y="{:.1}" text-anchor="end">{tick}</text>"#, LEFT - 8.0, y + 4.0);
+        let y = TOP + (BOTTOM - TOP) * (high - tick.log10()) / (high - low);
+        let (end, baseline) = (LEFT - 5.0, y + 4.0);
+        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{RIGHT}" y2="{y:.1}"/>"#);
+        let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{baseline:.1}" text-anchor="end">{tick}</text>"#);
     }
     let zero = LEFT + COLUMN;
-    let _ = writeln!(svg, r#"<line class="axis" x1="{zero}" y1="{TOP}" x2="{zero}" y2="{bottom}"/>"#);
-    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {TOP} V {bottom} H {right}"/>"#);
-    let middle = (LEFT + right) / 2.0;
-    let _ = writeln!(svg, r#"<text x="{middle}" y="{}" text-anchor="middle">{label}</text>"#, HEIGHT - 26.0);
-    let _ = writeln!(
-        svg,
-        r#"<text transform="translate(18 {}) rotate(-90)" text-anchor="middle">nanoseconds an operation (ordinary cases)</text>"#,
-        (TOP + bottom) / 2.0
-    );
-    let _ = writeln!(
-        svg,
-        r#"<text x="{middle}" y="{}" text-anchor="middle" font-size="12">blue: this project · orange: others · filled: beaten by none · hollow: beaten · triangle: wrong verdicts</text>"#,
-        HEIGHT - 8.0
-    );
+    let _ = writeln!(svg, r#"<line class="axis" x1="{zero}" y1="{TOP}" x2="{zero}" y2="{BOTTOM}"/>"#);
+    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {TOP} V {BOTTOM} H {RIGHT}"/>"#);
+    caption(svg, BOTTOM + 36.0, label);
+    caption(svg, BOTTOM + 52.0, "mark: in ordinary cases; line: up to all classes");
+    caption(svg, BOTTOM + 68.0, "blue: this project; filled: beaten by none");
+    caption(svg, BOTTOM + 84.0, "triangle: wrong verdicts, their share in brackets");
+    upward(svg, (TOP + BOTTOM) / 2.0, "nanoseconds, ordinary cases");
 }
 
-/// Joins the points that no other beats, as steps.
-fn join_front(svg: &mut String, points: &[PlotPoint]) {
-    let mut front: Vec<&PlotPoint> = points.iter().filter(|point| point.on_front).collect();
-    front.sort_by(|a, b| a.x.total_cmp(&b.x).then(b.y.total_cmp(&a.y)));
-    let mut path = String::new();
-    for point in front {
-        let command = if path.is_empty() { 'M' } else { 'L' };
-        let _ = write!(path, "{command} {:.1} {:.1} ", point.x, point.y);
+/// Joins the points that no other beats, as steps, and returns them.
+fn join_front(svg: &mut String, points: &[PlotPoint]) -> Vec<(f64, f64)> {
+    let mut front: Vec<(f64, f64)> =
+        points.iter().filter(|point| point.on_front).map(|point| (point.x, point.y)).collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    let path: Vec<String> = front.iter().map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
+    let _ = writeln!(svg, r#"<path class="front" d="M {}"/>"#, path.join(" L "));
+    front
+}
+
+fn marks(svg: &mut String, points: &[PlotPoint], front: &[(f64, f64)]) {
+    let mut labels = Labels::new([LEFT + 1.0, RIGHT, TOP, BOTTOM - 1.0], points.iter().map(|point| (point.x, point.y)));
+    labels.avoid((LEFT + COLUMN, TOP), (LEFT + COLUMN, BOTTOM));
+    for pair in front.windows(2) {
+        labels.avoid(pair[0], pair[1]);
     }
-    let _ = writeln!(svg, r#"<path class="front" d="{path}"/>"#);
-}
-
-fn marks(svg: &mut String, points: &[PlotPoint]) {
-    let places = points.iter().map(|point| (point.x, point.y));
-    let mut labels = Labels::new(LEFT, WIDTH - RIGHT, places);
-    let mut names = String::new();
     for point in points {
-        let PlotPoint { x, y, method, .. } = *point;
-        let class = format!(
-            "mark {}{}",
-            if method.ours { "ours" } else { "other" },
-            if point.dominated { " hollow" } else { "" }
-        );
-        let shape = if point.wrong > 0.0 {
-            format!("M {x:.1} {:.1} l 7 12 h -14 z", y - 7.0)
-        } else {
-            format!("M {:.1} {y:.1} a 6 6 0 1 0 12 0 a 6 6 0 1 0 -12 0 z", x - 6.0)
-        };
+        labels.avoid((point.x, point.y), (point.x_all, point.y));
+        labels.avoid((point.x, point.whisker[0]), (point.x, point.whisker[1]));
+    }
+    let (mut numbers, mut names) = (String::new(), Vec::new());
+    for (i, point) in points.iter().enumerate() {
+        let PlotPoint { x, y, method, wrong, .. } = *point;
+        let class =
+            format!("{}{}", if method.ours { "ours" } else { "other" }, if point.dominated { " hollow" } else { "" });
         let [least, p95] = point.whisker;
         let _ = writeln!(
             svg,
-            r#"<path class="{class} reach" d="M {x:.1} {y:.1} H {:.1} M {x:.1} {least:.1} V {p95:.1}"/><path class="{class}" d="{shape}"/>"#,
-            point.x_all
+            r#"<path class="{class} reach" d="M {x:.1} {y:.1} H {:.1} M {x:.1} {least:.1} V {p95:.1}"/><path class="{class}" d="{}"/>"#,
+            point.x_all,
+            shape((x, y), wrong > 0.0)
         );
-        let text = if point.wrong > 0.0 {
-            format!("{} ({} wrong)", method.name, percent(point.wrong))
-        } else {
-            method.name.clone()
-        };
-        names += &labels.place((x, y), &text);
+        numbers += &labels.place((x, y), i + 1);
+        let share = if wrong > 0.0 { format!(" ({} wrong)", percent(wrong)) } else { String::new() };
+        let time = method.time().median;
+        names.push((format!("{}: {time:.1} ns{share}", method.name), class, wrong > 0.0));
     }
-    // Names come last, so that no line crosses them.
-    svg.push_str(&names);
+    // Numbers come last, so that no line crosses them.
+    svg.push_str(&numbers);
+    key(svg, KEY, &names);
 }
 
 #[cfg(test)]
@@ -203,6 +195,6 @@ mod tests {
         let places = [0.0, 1.0, 1e3, 1e18, NAN_DISTANCE].map(|error| across(error, decades));
         assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
         assert!(places[0] < LEFT + COLUMN && places[1] > LEFT + COLUMN);
-        assert!(places[3] < WIDTH - RIGHT - COLUMN && places[4] > WIDTH - RIGHT - COLUMN);
+        assert!(places[3] < RIGHT - COLUMN && places[4] > RIGHT - COLUMN);
     }
 }

@@ -18,7 +18,7 @@ use super::labels::Labels;
 use super::measure::{Effort, Time};
 use super::progress::progress;
 use super::random::Random;
-use super::svg::style;
+use super::svg::{LEFT, RIGHT, caption, key, key_height, power_of_ten, shape, style, upward};
 
 /// What was measured of one method on one number of spheres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -218,7 +218,9 @@ fn race(count: usize, contestants: &[Contestant], truth: &[Option<Hit>], effort:
 
 /// Returns the diagram of the time for one ray against the number of spheres, both logarithmic.
 pub(super) fn plot(growth: &[Growth]) -> String {
-    let (left, right, top, bottom) = (70.0, 680.0, 44.0, 374.0);
+    const TOP: f64 = 36.0;
+    const BOTTOM: f64 = 316.0;
+    const KEY: f64 = BOTTOM + 58.0;
     let range = |values: &mut dyn Iterator<Item = f64>| {
         values.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x.log10()), high.max(x.log10())))
     };
@@ -226,47 +228,64 @@ pub(super) fn plot(growth: &[Growth]) -> String {
     let (y_low, y_high) = range(&mut growth.iter().map(|row| row.time.median));
     let (y_low, y_high) = (y_low.floor(), y_high.ceil());
     let x_high = x_high.max(x_low + 1.0);
-    let x = |spheres: f64| left + 20.0 + (right - left - 40.0) * (spheres.log10() - x_low) / (x_high - x_low);
-    let y = |time: f64| top + (bottom - top) * (y_high - time.log10()) / (y_high - y_low);
-    let mut svg = style("closest hit in a cloud of spheres");
-    let mut decade = y_low;
-    // Writing to a string cannot fail.
-    while decade <= y_high {
-        let at = y(10f64.powf(decade));
-        let _ = writeln!(svg, r#"<line class="grid" x1="{left}" y1="{at:.1}" x2="{right}" y2="{at:.1}"/>"#);
-        let _ = writeln!(svg, r#"<text x="{}" y="{:.1}" text-anchor="end">1e{decade}</text>"#, left - 8.0, at + 4.0);
-        decade += 1.0;
-    }
+    let x = |spheres: f64| LEFT + 14.0 + (RIGHT - LEFT - 50.0) * (spheres.log10() - x_low) / (x_high - x_low);
+    let y = |time: f64| TOP + (BOTTOM - TOP) * (y_high - time.log10()) / (y_high - y_low);
     let mut names: Vec<&str> = Vec::new();
     for row in growth {
         if !names.contains(&row.method.as_str()) {
             names.push(&row.method);
         }
-        let at = x(row.spheres as f64);
-        if row.method == growth[0].method {
-            let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{top}" x2="{at:.1}" y2="{bottom}"/>"#);
-            let _ = writeln!(svg, r#"<text x="{at:.1}" y="392" text-anchor="middle">{}</text>"#, row.spheres);
-        }
     }
-    let last = |name: &str| growth.iter().rfind(|row| row.method == name).map(|row| y(row.time.median));
-    let mut labels = Labels::new(right - 20.0, 800.0, []);
+    let mut svg = style("closest hit in a cloud of spheres", KEY + key_height(names.len()));
+    // Writing to a string cannot fail.
+    let mut decade = y_low;
+    while decade <= y_high {
+        #[expect(clippy::cast_possible_truncation, reason = "a whole number of decades")]
+        let (at, text) = (y(10f64.powf(decade)), power_of_ten(decade as i32));
+        let (end, baseline) = (LEFT - 5.0, at + 4.0);
+        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{at:.1}" x2="{RIGHT}" y2="{at:.1}"/>"#);
+        let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{baseline:.1}" text-anchor="end">{text}</text>"#);
+        decade += 1.0;
+    }
+    let mut lines: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
+    let mut key_names = Vec::new();
     for name in names {
         let rows: Vec<&Growth> = growth.iter().filter(|row| row.method == name).collect();
+        let points: Vec<(f64, f64)> = rows.iter().map(|row| (x(row.spheres as f64), y(row.time.median))).collect();
         let class = if rows[0].ours { "ours" } else { "other" };
-        let at = |row: &&Growth| (x(row.spheres as f64), y(row.time.median));
-        let points: String = rows.iter().map(at).map(|(x, y)| format!("{x:.1},{y:.1} ")).collect();
-        let _ = writeln!(svg, r#"<polyline class="mark {class}" style="fill: none" points="{points}"/>"#);
-        for (x, y) in rows.iter().map(at) {
-            let _ = writeln!(svg, r#"<circle class="mark {class}" cx="{x:.1}" cy="{y:.1}" r="4"/>"#);
+        if lines.is_empty() {
+            for (row, (at, _)) in rows.iter().zip(&points) {
+                let (under, spheres) = (BOTTOM + 17.0, row.spheres);
+                let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{TOP}" x2="{at:.1}" y2="{BOTTOM}"/>"#);
+                let _ = writeln!(
+                    svg,
+                    r#"<text class="small" x="{at:.1}" y="{under}" text-anchor="middle">{spheres}</text>"#
+                );
+            }
         }
-        svg.push_str(&labels.place((right - 20.0, last(name).unwrap_or(top)), name));
+        lines.push((class, points));
+        key_names.push((name.to_owned(), class.to_owned(), false));
     }
-    let _ = writeln!(svg, r#"<path class="axis" d="M {left} {top} V {bottom} H {right}"/>"#);
-    let _ = writeln!(svg, r#"<text x="375" y="414" text-anchor="middle">spheres</text>"#);
-    let _ = writeln!(
-        svg,
-        r#"<text transform="translate(18 209) rotate(-90)" text-anchor="middle">nanoseconds a ray, one thread</text>"#
-    );
+    let mut labels = Labels::new([LEFT, RIGHT, TOP, BOTTOM], lines.iter().flat_map(|(_, points)| points.clone()));
+    let mut numbers = String::new();
+    for (class, points) in &lines {
+        for pair in points.windows(2) {
+            labels.avoid(pair[0], pair[1]);
+        }
+        let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        let _ = writeln!(svg, r#"<polyline class="{class} line" points="{}"/>"#, path.join(" "));
+        for &point in points {
+            let _ = writeln!(svg, r#"<path class="{class}" d="{}"/>"#, shape(point, false));
+        }
+    }
+    for (i, (_, points)) in lines.iter().enumerate() {
+        numbers += &labels.place(points[points.len() - 1], i + 1);
+    }
+    svg.push_str(&numbers);
+    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {TOP} V {BOTTOM} H {RIGHT}"/>"#);
+    caption(&mut svg, BOTTOM + 36.0, "spheres");
+    upward(&mut svg, (TOP + BOTTOM) / 2.0, "nanoseconds a ray, one thread");
+    key(&mut svg, KEY, &key_names);
     svg + "</svg>\n"
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::results::{Group, Pictured};
 use crate::labels::Labels;
-use crate::svg::{escape, style};
+use crate::svg::{LEFT, RIGHT, caption, escape, key, key_height, power_of_ten, shape, style, upward};
 
 /// A method's sums over a group of scenes.
 pub(crate) struct Total {
@@ -47,49 +47,34 @@ pub(crate) fn totals(pictures: &[Pictured], group: Group) -> Vec<Total> {
     totals
 }
 
-const LEFT: f64 = 70.0;
-const PANEL: f64 = 236.0;
-const GAP: f64 = 6.0;
-const TOP: f64 = 72.0;
-const BOTTOM: f64 = 366.0;
+/// Height of a panel, and where the first begins.
+const PANEL: f64 = 150.0;
+const GAP: f64 = 44.0;
+const TOP: f64 = 54.0;
 /// Width of the column for no wrong pixel at all.
-const COLUMN: f64 = 46.0;
+const COLUMN: f64 = 52.0;
 
-/// Returns the diagram.
+/// Returns the diagram: one panel below the other.
 pub(crate) fn plot(pictures: &[Pictured]) -> String {
     let groups = [Group::Figures, Group::Crowd, Group::Hard].map(|group| (group, totals(pictures, group)));
-    let speeds = groups.iter().flat_map(|(_, totals)| totals).map(Total::speed);
-    let (low, high) = speeds.fold((f64::MAX, f64::MIN), |(low, high), speed| (low.min(speed), high.max(speed)));
-    let (low, high) = (low.log10() - 0.15, high.log10() + 0.15);
-    let y = |speed: f64| TOP + (BOTTOM - TOP) * (high - speed.log10()) / (high - low);
-
-    let mut svg = style("whole pictures: wrong pixels against speed");
-    // Writing to a string cannot fail.
-    let ticks = (-3..5).flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
-    for tick in ticks.filter(|tick| (low..high).contains(&tick.log10())) {
-        let (y, end) = (y(tick), LEFT + 3.0 * PANEL + 2.0 * GAP);
-        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{end}" y2="{y:.1}"/>"#);
-        let _ = writeln!(svg, r#"<text x="{}" y="{:.1}" text-anchor="end">{tick}</text>"#, LEFT - 8.0, y + 4.0);
-    }
+    let bottom = TOP + 3.0 * PANEL + 2.0 * GAP;
+    let key_at = bottom + 74.0;
+    let names: Vec<_> = groups[0]
+        .1
+        .iter()
+        .map(|total| {
+            let class = if total.ours { "ours" } else { "other" };
+            (total.method.clone(), class.to_owned(), !total.ours)
+        })
+        .collect();
+    let mut svg = style("whole pictures: errors and speed", key_at + key_height(names.len()));
     for (i, (group, totals)) in groups.iter().enumerate() {
-        let left = LEFT + i as f64 * (PANEL + GAP);
-        panel(&mut svg, left, title(*group, pictures), totals, &y);
+        panel(&mut svg, TOP + i as f64 * (PANEL + GAP), title(*group, pictures), totals);
     }
-    let middle = LEFT + 1.5 * PANEL + GAP;
-    let _ = writeln!(
-        svg,
-        r#"<text x="{middle}" y="{}" text-anchor="middle">wrong pixels in a million (0: none, and with 95 % confidence fewer than below it)</text>"#,
-        BOTTOM + 52.0
-    );
-    let _ = writeln!(
-        svg,
-        r#"<text transform="translate(18 {}) rotate(-90)" text-anchor="middle">million rays a second, one thread</text>"#,
-        (TOP + BOTTOM) / 2.0
-    );
-    let _ = writeln!(
-        svg,
-        r#"<text x="{middle}" y="432" text-anchor="middle" font-size="12">blue discs: this project · orange triangles: others</text>"#
-    );
+    upward(&mut svg, (TOP + bottom) / 2.0, "million rays a second, one thread");
+    caption(&mut svg, bottom + 36.0, "wrong pixels in a million (0: none, and fewer");
+    caption(&mut svg, bottom + 52.0, "than below it, with 95 % confidence)");
+    key(&mut svg, key_at, &names);
     svg + "</svg>\n"
 }
 
@@ -106,48 +91,44 @@ fn title(group: Group, pictures: &[Pictured]) -> String {
     }
 }
 
-fn panel(svg: &mut String, left: f64, title: String, totals: &[Total], y: &dyn Fn(f64) -> f64) {
+fn panel(svg: &mut String, top: f64, title: String, totals: &[Total]) {
+    let bottom = top + PANEL;
+    let speeds = totals.iter().map(|total| total.speed().log10());
+    let (low, high) = speeds.fold((f64::MAX, f64::MIN), |(low, high), speed| (low.min(speed), high.max(speed)));
+    let (low, high) = (low - 0.2, high + 0.2);
+    let y = |speed: f64| top + PANEL * (high - speed.log10()) / (high - low);
     let x = |wrong: f64| {
-        let (start, end) = (left + COLUMN + 8.0, left + PANEL - 12.0);
-        if wrong == 0.0 { left + 16.0 } else { start + (end - start) * wrong.max(1.0).log10() / 6.0 }
+        let (start, end) = (LEFT + COLUMN + 8.0, RIGHT - 12.0);
+        if wrong == 0.0 { LEFT + 22.0 } else { start + (end - start) * wrong.max(1.0).log10() / 6.0 }
     };
-    let _ = writeln!(
-        svg,
-        r#"<text x="{}" y="{}" text-anchor="middle" font-weight="bold">{}</text>"#,
-        left + PANEL / 2.0,
-        TOP - 10.0,
-        escape(&title)
-    );
-    for (decade, text) in [(0, "1"), (2, "100"), (4, "10⁴"), (6, "10⁶")] {
-        let at = x(10f64.powi(decade));
-        let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{TOP}" x2="{at:.1}" y2="{BOTTOM}"/>"#);
-        let _ = writeln!(svg, r#"<text x="{at:.1}" y="{}" text-anchor="middle">{text}</text>"#, BOTTOM + 17.0);
+    // Writing to a string cannot fail.
+    let _ = writeln!(svg, r#"<text x="{LEFT}" y="{:.1}" font-weight="bold">{}</text>"#, top - 7.0, escape(&title));
+    let ticks = (-3..5).flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
+    for tick in ticks.filter(|tick| (low..high).contains(&tick.log10())) {
+        let (at, end) = (y(tick), LEFT - 5.0);
+        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{at:.1}" x2="{RIGHT}" y2="{at:.1}"/>"#);
+        let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{:.1}" text-anchor="end">{tick}</text>"#, at + 4.0);
     }
+    let under = bottom + 15.0;
+    for decade in [0, 2, 4, 6] {
+        let (at, text) = (x(10f64.powi(decade)), power_of_ten(decade));
+        let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{top}" x2="{at:.1}" y2="{bottom}"/>"#);
+        let _ = writeln!(svg, r#"<text class="small" x="{at:.1}" y="{under}" text-anchor="middle">{text}</text>"#);
+    }
+    let bound = totals.first().map_or(f64::NAN, |total| 3e6 / total.pixels as f64).ceil();
     let zero = x(0.0);
-    let bound = totals.first().map_or(f64::NAN, |total| 3e6 / total.pixels as f64);
-    let _ = writeln!(svg, r#"<text x="{zero}" y="{}" text-anchor="middle">0</text>"#, BOTTOM + 17.0);
-    let _ = writeln!(
-        svg,
-        r#"<text x="{zero}" y="{}" text-anchor="middle" font-size="11">&lt; {}</text>"#,
-        BOTTOM + 31.0,
-        bound.ceil()
-    );
-    let rule = left + COLUMN - 8.0;
-    let _ = writeln!(svg, r#"<line class="axis" x1="{rule}" y1="{TOP}" x2="{rule}" y2="{BOTTOM}"/>"#);
-    let _ = writeln!(svg, r#"<path class="axis" d="M {left} {TOP} V {BOTTOM} H {}"/>"#, left + PANEL);
+    let _ = writeln!(svg, r#"<text class="small" x="{zero}" y="{under}" text-anchor="middle">0 (&lt; {bound})</text>"#);
+    let rule = LEFT + COLUMN;
+    let _ = writeln!(svg, r#"<line class="axis" x1="{rule}" y1="{top}" x2="{rule}" y2="{bottom}"/>"#);
+    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {top} V {bottom} H {RIGHT}"/>"#);
     let place = |total: &Total| (x(total.wrong_in_a_million()), y(total.speed()));
-    let mut labels = Labels::new(left, left + PANEL, totals.iter().map(place));
-    let mut names = String::new();
-    for total in totals {
-        let (x, y) = place(total);
-        let class = if total.ours { "mark ours" } else { "mark other" };
-        let shape = if total.ours {
-            format!("M {:.1} {y:.1} a 6 6 0 1 0 12 0 a 6 6 0 1 0 -12 0 z", x - 6.0)
-        } else {
-            format!("M {x:.1} {:.1} l 7 12 h -14 z", y - 7.0)
-        };
-        let _ = writeln!(svg, r#"<path class="{class}" d="{shape}"/>"#);
-        names += &labels.place((x, y), &total.method);
+    let mut labels = Labels::new([LEFT + 1.0, RIGHT, top, bottom - 1.0], totals.iter().map(place));
+    labels.avoid((rule, top), (rule, bottom));
+    let mut numbers = String::new();
+    for (i, total) in totals.iter().enumerate() {
+        let class = if total.ours { "ours" } else { "other" };
+        let _ = writeln!(svg, r#"<path class="{class}" d="{}"/>"#, shape(place(total), !total.ours));
+        numbers += &labels.place(place(total), i + 1);
     }
-    svg.push_str(&names);
+    svg.push_str(&numbers);
 }
