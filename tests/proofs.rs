@@ -14,6 +14,14 @@ type File = (&'static str, &'static [(&'static str, &'static str, &'static str, 
 
 const FILES: &[File] = &[
     (
+        "Determinant",
+        &[
+            ("BOUND_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "let bound = ", " * U * (sum("),
+            ("TAU_LIMIT", "rt-math/src/pseudo_inverse/regular.rs", "const TAU_LIMIT: f64 = ", ";"),
+            ("ETA_LIMIT", "rt-math/src/pseudo_inverse/regular.rs", "const ETA_LIMIT: f64 = ", ";"),
+        ],
+    ),
+    (
         "Dot",
         &[
             ("ERROR", "rt-math/src/exact/dot.rs", "const ERROR: f64 = ", ";"),
@@ -83,9 +91,27 @@ const FILES: &[File] = &[
                 "let error = ",
                 " * (edge * edge * edge) * far + UNDERFLOW;\n    certain_signs([turn(",
             ),
+            ("TURN_ERROR_2", "rt-geom/src/triangle/locate.rs", "let relative = ", " * (edge"),
             ("VOLUME_ERROR", "rt-geom/src/triangle/locate.rs", "let error = ", " * (edge * edge) * far + UNDERFLOW;"),
         ],
     ),
+    (
+        "Polygon",
+        &[(
+            "TURN_ERROR",
+            "../figures/src/import/polygon.rs",
+            "let error = ",
+            " * (left.abs() + right.abs()) + f64::MIN_POSITIVE;",
+        )],
+    ),
+    (
+        "Quadratic",
+        &[
+            ("CANCELLATION", "rt-math/src/quadratic.rs", "const CANCELLATION: f64 = ", ";"),
+            ("D_FLOOR", "rt-math/src/quadratic.rs", "const D_FLOOR: f64 = ", ";"),
+        ],
+    ),
+    ("Round", &[]),
     (
         "Sphere",
         &[
@@ -98,14 +124,48 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "SphereExact",
+        &[
+            ("FARTHEST", "rt-geom/src/sphere/exact.rs", "const FARTHEST: f64 = ", ";"),
+            ("UNDERFLOW", "rt-geom/src/sphere/exact.rs", "const UNDERFLOW: f64 = ", ";"),
+            ("DELTA_ERROR", "rt-geom/src/sphere/exact.rs", "let error = ", " * ((reach_square.high()"),
+            ("SIDE_ERROR", "rt-geom/src/sphere/exact.rs", "let error = ", " * (square.high()"),
+        ],
+    ),
+    (
+        "SurfaceFilter",
+        &[
+            ("WAY_ERROR", "rt-geom/src/surface/filter.rs", "const WAY_ERROR: f64 = ", ";"),
+            ("POINT_ERROR", "rt-geom/src/surface/filter.rs", "const POINT_ERROR: f64 = ", ";"),
+            ("PRODUCT_ERROR", "rt-geom/src/surface/filter.rs", "const PRODUCT_ERROR: f64 = ", ";"),
+            ("UNDERFLOW", "rt-geom/src/surface/filter.rs", "const UNDERFLOW: f64 = ", ";"),
+        ],
+    ),
+    (
         "Triangle",
         &[
             ("SHORTEST", "rt-geom/src/triangle/mod.rs", "const SHORTEST: f64 = ", ";"),
             ("FARTHEST", "rt-geom/src/triangle/mod.rs", "const FARTHEST: f64 = ", ";"),
             ("ERROR", "rt-geom/src/triangle/filter.rs", "const ERROR: f64 = ", ";"),
+            ("PLANE_ERROR", "rt-geom/src/triangle/exact.rs", "slope.abs() > (", " * triangle.edge)"),
+            ("UNDERFLOW", "rt-geom/src/triangle/exact.rs", "const UNDERFLOW: f64 = ", ";"),
             ("AREA_ERROR", "rt-geom/src/triangle/mod.rs", "area > ", " * self.edge * self.edge;"),
         ],
     ),
+    (
+        "TriangleExact",
+        &[
+            (
+                "VOLUME_ERROR",
+                "rt-geom/src/triangle/exact.rs",
+                "let error = ",
+                " * ray.reach() * size * size + UNDERFLOW;",
+            ),
+            ("SUM_FACTOR", "rt-geom/src/triangle/exact.rs", "certain(u + v + w, ", " * error)"),
+            ("UNDERFLOW", "rt-geom/src/triangle/exact.rs", "const UNDERFLOW: f64 = ", ";"),
+        ],
+    ),
+    ("Twice", &[]),
 ];
 
 #[test]

@@ -1,5 +1,5 @@
 (* rt-geom, triangle/locate.rs: a point and a triangle in plain doubles. *)
-From Proofs Require Import Rounding.
+From Proofs Require Import Rounding DoubleDouble Twice.
 Open Scope R_scope.
 
 (* Up to here in magnitude the differences of points may be. *)
@@ -8,6 +8,8 @@ Definition FARTHEST := bp 200.
 Definition UNDERFLOW := bp (-500).
 (* The error of a turn, relative to l^3 k: `filtered_signs`. *)
 Definition TURN_ERROR := 136 * u.
+(* The same in double-double: `double_double_turns`. *)
+Definition TURN_ERROR_2 := 640 * u * u.
 (* The error of a volume, relative to l^2 k: `coplanar`. *)
 Definition VOLUME_ERROR := 64 * u.
 
@@ -41,6 +43,8 @@ Definition tturn f1 f2 f3 t1 t2 t3 := tdot tn1 tn2 tn3 (tn f2 f3 t2 t3 p2 p3) (t
 Definition tvolume := tdot tn1 tn2 tn3 (difference p1 a1) (difference p2 a2) (difference p3 a3).
 Definition terror :=
   Add (Mul (Mul (X TURN_ERROR (-45)) (Mul (Mul tedge tedge) tedge)) tfar) (X UNDERFLOW (-500)).
+Definition terror_2 :=
+  Add (Mul (Mul (X TURN_ERROR_2 (-96)) (Mul (Mul tedge tedge) tedge)) tfar) (X UNDERFLOW (-500)).
 Definition tvolume_error := Add (Mul (Mul (X VOLUME_ERROR (-46)) (Mul tedge tedge)) tfar) (X UNDERFLOW (-500)).
 Ltac terms := unfold terror, tvolume_error, tvolume, tturn, tn1, tn2, tn3, tn, tedge, tfar, tmost, tmax, difference, tdot, tminor in *.
 
@@ -101,20 +105,25 @@ Proof.
   lra.
 Qed.
 
+Lemma turn_size : forall f1 f2 f3 t1 t2 t3, edge_like f1 f2 f3 t1 t2 t3 -> far_like f1 f2 f3 ->
+  size (tturn f1 f2 f3 t1 t2 t3) <= 12 * (l * l * l * k).
+Proof.
+  intros f1 f2 f3 t1 t2 t3 HE HF.
+  destruct edges as ((E1 & E2 & E3) & _ & _ & F1 & F2 & F3). destruct HE as (G1 & G2 & G3). destruct HF as (K1 & K2 & K3).
+  destruct positive as [L0 K0]. terms. cbn [size].
+  pose proof (minor_size _ _ _ _ _ _ L0 L0 E2 F3 E3 F2) as N1. pose proof (minor_size _ _ _ _ _ _ L0 L0 E3 F1 E1 F3) as N2.
+  pose proof (minor_size _ _ _ _ _ _ L0 L0 E1 F2 E2 F1) as N3.
+  pose proof (minor_size _ _ _ _ _ _ L0 K0 G2 K3 G3 K2) as M1. pose proof (minor_size _ _ _ _ _ _ L0 K0 G3 K1 G1 K3) as M2.
+  pose proof (minor_size _ _ _ _ _ _ L0 K0 G1 K2 G2 K1) as M3.
+  pose proof (mul2 _ _ _ _ N1 M1). pose proof (mul2 _ _ _ _ N2 M2). pose proof (mul2 _ _ _ _ N3 M3). lra.
+Qed.
+
 (* A turn is off by at most 136 u l^3 k + 2^-500 as computed. *)
 Theorem turn_error : forall f1 f2 f3 t1 t2 t3 turn e, edge_like f1 f2 f3 t1 t2 t3 -> far_like f1 f2 f3 ->
   plain (tturn f1 f2 f3 t1 t2 t3) turn -> plain terror e -> Rabs (turn - exact (tturn f1 f2 f3 t1 t2 t3)) <= e.
 Proof.
   intros f1 f2 f3 t1 t2 t3 turn e HE HF Ht He. pose proof (bounded_turn _ _ _ _ _ _ HE HF) as B.
-  destruct edges as ((E1 & E2 & E3) & _ & _ & F1 & F2 & F3). destruct HE as (G1 & G2 & G3). destruct HF as (K1 & K2 & K3).
-  destruct positive as [L0 K0]. destruct range as [RE RF].
-  assert (Z : size (tturn f1 f2 f3 t1 t2 t3) <= 12 * (l * l * l * k)).
-  { terms. cbn [size].
-    pose proof (minor_size _ _ _ _ _ _ L0 L0 E2 F3 E3 F2) as N1. pose proof (minor_size _ _ _ _ _ _ L0 L0 E3 F1 E1 F3) as N2.
-    pose proof (minor_size _ _ _ _ _ _ L0 L0 E1 F2 E2 F1) as N3.
-    pose proof (minor_size _ _ _ _ _ _ L0 K0 G2 K3 G3 K2) as M1. pose proof (minor_size _ _ _ _ _ _ L0 K0 G3 K1 G1 K3) as M2.
-    pose proof (minor_size _ _ _ _ _ _ L0 K0 G1 K2 G2 K1) as M3.
-    pose proof (mul2 _ _ _ _ N1 M1). pose proof (mul2 _ _ _ _ N2 M2). pose proof (mul2 _ _ _ _ N3 M3). lra. }
+  pose proof (turn_size _ _ _ _ _ _ HE HF) as Z. destruct positive as [L0 K0]. destruct range as [RE RF].
   pose proof (plain_error_at _ _ 11 (low (tturn f1 f2 f3 t1 t2 t3)) Ht B eq_refl eq_refl ltac:(lia)) as P.
   assert (BE : bounded terror).
   { unfold terror. cbn [bounded]. repeat match goal with |- _ /\ _ => split end; try assumption.
@@ -132,6 +141,40 @@ Proof.
   assert (0 <= G) by (unfold G; repeat apply Rmult_le_pos; assumption). clearbody T G.
   apply Rabs_le_inv in Q. rewrite u_val in *. lra.
 Qed.
+
+(* In double-double it is off by at most 640 u^2 l^3 k + 2^-500 as computed, less what the test of its high part takes. *)
+Theorem turn_error_2 : forall f1 f2 f3 t1 t2 t3 turn e, edge_like f1 f2 f3 t1 t2 t3 -> far_like f1 f2 f3 ->
+  twice (tturn f1 f2 f3 t1 t2 t3) turn -> plain terror_2 e ->
+  Rabs (turn - exact (tturn f1 f2 f3 t1 t2 t3)) <= (1 - 2 * u) * e.
+Proof.
+  intros f1 f2 f3 t1 t2 t3 turn e HE HF Ht He. pose proof (bounded_turn _ _ _ _ _ _ HE HF) as B.
+  pose proof (turn_size _ _ _ _ _ _ HE HF) as Z. destruct positive as [L0 K0]. destruct range as [RE RF].
+  pose proof (twice_error_at _ _ 51 (low2 (tturn f1 f2 f3 t1 t2 t3)) Ht B eq_refl eq_refl ltac:(lia)) as P.
+  assert (BE : bounded terror_2).
+  { unfold terror_2. cbn [bounded]. repeat match goal with |- _ /\ _ => split end; try assumption.
+    - unfold TURN_ERROR_2. constant.
+    - unfold UNDERFLOW. rewrite Rabs_pos_eq; [lra | apply Rlt_le, bp_pos]. }
+  pose proof (plain_error_at terror_2 e 9 (low terror_2) He BE eq_refl eq_refl ltac:(lia)) as Q.
+  assert (LT : bp (low terror_2) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (LT2 : bp (low2 (tturn f1 f2 f3 t1 t2 t3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
+  assert (V : exact terror_2 = 640 * (u * u) * (l * l * l * k) + UNDERFLOW /\ size terror_2 = 640 * (u * u) * (l * l * l * k) + UNDERFLOW).
+  { unfold terror_2. cbn [exact size]. rewrite l_size, k_size. fold l k. rewrite (Rabs_pos_eq UNDERFLOW) by lra.
+    rewrite (Rabs_pos_eq TURN_ERROR_2) by (unfold TURN_ERROR_2; rewrite u_val; lra). unfold TURN_ERROR_2. split; ring. }
+  destruct V as [V1 V2]. rewrite V1, V2 in Q.
+  eapply Rle_trans; [exact P|]. set (T := size (tturn f1 f2 f3 t1 t2 t3)) in *. set (G := l * l * l * k) in *.
+  assert (0 <= G) by (unfold G; repeat apply Rmult_le_pos; assumption). clearbody T G.
+  apply Rabs_le_inv in Q. rewrite u_val in *. lra.
+Qed.
+Theorem TURN_ERROR_2_holds : forall e, plain terror_2 e ->
+  let certain f1 f2 f3 t1 t2 t3 := forall h l, dd h l -> twice (tturn f1 f2 f3 t1 t2 t3) (h + l) ->
+    (h > e -> 0 < exact (tturn f1 f2 f3 t1 t2 t3)) /\ (h < - e -> exact (tturn f1 f2 f3 t1 t2 t3) < 0) in
+  certain b1 b2 b3 c1 c2 c3 /\ certain c1 c2 c3 a1 a2 a3 /\ certain a1 a2 a3 b1 b2 b3.
+Proof.
+  intros e He certain. destruct edges as (E1 & E2 & E3 & _). destruct fars as (F1 & F2 & F3).
+  split; [|split]; intros h low_part D T; apply high_sign with (l := low_part); auto; apply turn_error_2; assumption.
+Qed.
+
 (* What underflows in a turn, a volume and their bounds is below a part of 10^12 of UNDERFLOW. *)
 Theorem UNDERFLOW_holds : forall f1 f2 f3 t1 t2 t3,
   bp (low (tturn f1 f2 f3 t1 t2 t3)) <= / 1000000000000 * UNDERFLOW /\ bp (low terror) <= / 1000000000000 * UNDERFLOW /\

@@ -92,23 +92,24 @@ Qed.
 Inductive term :=
   | X (x : R) (q : Z)        (* given, at most 2^q *)
   | D (x y : R) (q : Z)      (* x - y of given ones, at most 2^q *)
+  | XX (x y : R) (q : Z)     (* x y of given ones in double-double, exact but for underflow, at most 2^q *)
   | Add (a b : term) | Sub (a b : term) | Mul (a b : term) | Abs (a : term) | Max (a b : term).
 
 Fixpoint exact t := match t with
-  | X x _ => x | D x y _ => x - y
+  | X x _ => x | D x y _ => x - y | XX x y _ => x * y
   | Add a b => exact a + exact b | Sub a b => exact a - exact b | Mul a b => exact a * exact b
   | Abs a => Rabs (exact a) | Max a b => Rmax (exact a) (exact b) end.
 Fixpoint size t := match t with
-  | X x _ => Rabs x | D x y _ => Rabs (x - y)
+  | X x _ => Rabs x | D x y _ => Rabs (x - y) | XX x y _ => Rabs (x * y)
   | Add a b => size a + size b | Sub a b => size a + size b | Mul a b => size a * size b
   | Abs a => size a | Max a b => Rmax (size a) (size b) end.
 Fixpoint bounded t := match t with
-  | X x q => Rabs x <= bp q | D x y q => Rabs (x - y) <= bp q
+  | X x q => Rabs x <= bp q | D x y q => Rabs (x - y) <= bp q | XX x y q => Rabs (x * y) <= bp q
   | Add a b => bounded a /\ bounded b | Sub a b => bounded a /\ bounded b | Mul a b => bounded a /\ bounded b
   | Abs a => bounded a | Max a b => bounded a /\ bounded b end.
 (* size <= 2^top *)
 Fixpoint top t := match t with
-  | X _ q => q | D _ _ q => q
+  | X _ q => q | D _ _ q => q | XX _ _ q => q
   | Add a b => Z.max (top a) (top b) + 1 | Sub a b => Z.max (top a) (top b) + 1 | Mul a b => top a + top b
   | Abs a => top a | Max a b => Z.max (top a) (top b) end%Z.
 
@@ -116,12 +117,12 @@ Section Terms.
 Variables (v : R) (wd wa wm : nat) (pa pm : Z).
 (* how many units v of relative error, and the exponent of the absolute one *)
 Fixpoint roundings t : nat := match t with
-  | X _ _ => 0 | D _ _ _ => wd
+  | X _ _ => 0 | D _ _ _ => wd | XX _ _ _ => 0
   | Add a b => Nat.max (roundings a) (roundings b) + wa | Sub a b => Nat.max (roundings a) (roundings b) + wa
   | Mul a b => roundings a + roundings b + wm
   | Abs a => roundings a | Max a b => Nat.max (roundings a) (roundings b) end.
 Fixpoint under t : Z := match t with
-  | X _ _ => -100000 | D _ _ _ => -100000
+  | X _ _ => -100000 | D _ _ _ => -100000 | XX _ _ _ => pm
   | Add a b => Z.max (Z.max (under a) (under b)) pa + 3 | Sub a b => Z.max (Z.max (under a) (under b)) pa + 3
   | Mul a b => Z.max (Z.max (under a + top b) (under a + under b)) (Z.max (top a + under b) pm) + 4
   | Abs a => under a | Max a b => Z.max (under a) (under b) end%Z.
@@ -130,6 +131,7 @@ Definition g n := (1 + v) ^ n - 1.
 Inductive computed : term -> R -> Prop :=
   | CX : forall x q, computed (X x q) x
   | CD : forall x y q z, Rabs (z - (x - y)) <= g wd * Rabs (x - y) -> computed (D x y q) z
+  | CP : forall x y q z, Rabs (z - x * y) <= bp pm -> computed (XX x y q) z
   | CAdd : forall a b x y z, computed a x -> computed b y ->
       Rabs (z - (x + y)) <= g wa * Rabs (x + y) + bp pa -> computed (Add a b) z
   | CSub : forall a b x y z, computed a x -> computed b y ->
@@ -176,6 +178,7 @@ Proof.
   induction t; simpl; intro H; try (destruct H as [H1 H2]; specialize (IHt1 H1); specialize (IHt2 H2)).
   - split; [apply Rle_refl | assumption].
   - split; [apply Rle_refl | assumption].
+  - split; [apply Rle_refl | assumption].
   - split; [eapply Rle_trans; [apply Rabs_triang|]; lra | pose proof (S (top t1) (top t2)); lra].
   - split; [unfold Rminus; eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_Ropp; lra
            | pose proof (S (top t1) (top t2)); lra].
@@ -202,6 +205,7 @@ Proof.
   - replace (x - x) with 0 by ring. rewrite Rabs_R0. pose proof (g_pos 0). pose proof (Rabs_pos x).
     pose proof (bp_pos (-100000)). nra.
   - pose proof (bp_pos (-100000)). lra.
+  - pose proof (g_pos 0). pose proof (Rabs_pos (x * y)). nra.
   - destruct B as [B1 B2]. specialize (IHcomputed1 B1 ltac:(lia)). specialize (IHcomputed2 B2 ltac:(lia)).
     destruct (top_ok _ B1) as [S1 _]. destruct (top_ok _ B2) as [S2 _].
     set (n := Nat.max (roundings a) (roundings b)) in *. set (w := Z.max (Z.max (under a) (under b)) pa).
@@ -425,3 +429,22 @@ Lemma mul3 : forall x y z X Y Z, 0 <= x <= X -> 0 <= y <= Y -> 0 <= z <= Z -> x 
 Proof. intros. apply Rmult_le_compat; try lra; [apply Rmult_le_pos; lra | apply Rmult_le_compat; lra]. Qed.
 Lemma mul2 : forall x y X Y, 0 <= x <= X -> 0 <= y <= Y -> x * y <= X * Y.
 Proof. intros. apply Rmult_le_compat; lra. Qed.
+
+(* The error of one rounding, by the rounded value. *)
+Lemma RN_back : forall x, Rabs (RN x - x) <= u * Rabs (RN x) + bp (-1075).
+Proof.
+  intro x. pose proof (error_le_half_ulp_round radix2 fexp even x) as H.
+  change (round radix2 fexp (Znearest even) x) with (RN x) in H. eapply Rle_trans; [exact H|].
+  assert (U : ulp radix2 fexp (RN x) <= 2 * (u * Rabs (RN x)) + bp (-1074)).
+  { destruct (Req_dec (RN x) 0) as [Z|N].
+    - rewrite Z, Rabs_R0. unfold fexp. rewrite ulp_FLT_0. lra. reflexivity.
+    - rewrite ulp_neq_0 by assumption. unfold cexp, fexp, FLT_exp.
+      destruct (Z.max_spec (mag radix2 (RN x) - 53) (-1074)) as [[_ E]|[_ E]]; rewrite E.
+      + pose proof u_pos. pose proof (Rabs_pos (RN x)). nra.
+      + pose proof (bpow_mag_le radix2 (RN x) N) as M. pose proof (bp_pos (-1074)).
+        assert (bp (mag radix2 (RN x) - 53) <= 2 * (u * Rabs (RN x))).
+        { replace (mag radix2 (RN x) - 53)%Z with (1 + (-53 + (mag radix2 (RN x) - 1)))%Z by ring.
+          rewrite bp_add, bp_add, bp_1. fold u. pose proof u_pos. nra. }
+        lra. }
+  assert (bp (-1074) = 2 * bp (-1075)) by (change (-1074)%Z with (1 + -1075)%Z; rewrite bp_add, bp_1; ring). lra.
+Qed.

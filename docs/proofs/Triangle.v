@@ -7,6 +7,10 @@ Definition SHORTEST := bp (-150).
 Definition FARTHEST := bp 300.
 (* The error of each volume, relative to D E (E + S), and of the height, relative to E^2 (E + S). *)
 Definition ERROR := 18 * u.
+(* The same of the slope and of the height of a plane: `slope_sign`, `height_sign`. *)
+Definition PLANE_ERROR := 18 * u.
+(* What underflows in a height. *)
+Definition UNDERFLOW := bp (-500).
 (* The error of a component of the normal, relative to E^2. *)
 Definition AREA_ERROR := 16 * u.
 
@@ -236,7 +240,7 @@ Proof.
 Qed.
 End Filter.
 
-(* surely_leans and slope_sign: the sum alone against 18 u E^2 D. *)
+(* surely_leans: the sum alone against 18 u E^2 D. *)
 Theorem leans : forall sum e edge, plain tsum sum -> plain tleans e -> plain tedge edge -> SHORTEST < edge ->
   Rabs (sum - Sum) <= e.
 Proof.
@@ -346,4 +350,89 @@ Proof.
     set (G := u * (E * E)) in *. clearbody G. apply Rabs_le_inv in P2. rewrite u_val in *. lra. }
   change (exact tn1) with n1 in Q. split; [exact Q|]. intros Hn N0. rewrite N0 in Q. rewrite Rminus_0_r in Q. lra.
 Qed.
+
+(* `slope_sign`: the sum again, with the products in another order; the bound is that of `surely_leans`. *)
+Definition tslope := let n x2 y3 x3 y2 := tminor x2 y3 x3 y2 in
+  tdot (n td2 te3 td3 te2) (n td3 te1 td1 te3) (n td1 te2 td2 te1) tf1 tf2 tf3.
+Theorem PLANE_ERROR_holds : forall slope e edge, plain tslope slope -> plain tleans e -> plain tedge edge -> SHORTEST < edge ->
+  Rabs (slope - exact tslope) <= e /\ (slope > e -> 0 < exact tslope) /\ (slope < - e -> exact tslope < 0).
+Proof.
+  intros slope e edge Hs He Hedge L. destruct pieces as (A1 & A2 & A3 & A4 & (X1 & X2 & X3) & (Y1 & Y2 & Y3) & SP & EP & RR).
+  pose proof (SHORTEST_holds edge Hedge L) as LE.
+  assert (EE : bp (-151) * bp (-151) <= E * E) by (apply Rmult_le_compat; try lra; apply Rlt_le, bp_pos).
+  assert (X : bp (-460) <= u * (reach * (E * E))).
+  { apply Rle_trans with (u * (bp (-100) * (bp (-151) * bp (-151)))).
+    - unfold u. rewrite <- !bp_add. apply bp_le. lia.
+    - apply Rmult_le_compat_l; [apply Rlt_le, u_pos|]. apply Rmult_le_compat; try lra; try (apply Rlt_le, bp_pos).
+      rewrite <- bp_add. apply Rlt_le, bp_pos. }
+  assert (BS : bounded tslope) by (unfold tslope; terms; cbn [bounded]; repeat split; assumption).
+  assert (Z1 : size tslope <= reach * (E * E)).
+  { unfold tslope. terms. cbn [size]. fold e1 e2 e3 f1 f2 f3.
+    assert (D1' : 0 <= Rabs d1 <= reach) by (split; [apply Rabs_pos | assumption]).
+    assert (D2' : 0 <= Rabs d2 <= reach) by (split; [apply Rabs_pos | assumption]).
+    assert (D3' : 0 <= Rabs d3 <= reach) by (split; [apply Rabs_pos | assumption]).
+    pose proof (permanent _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ Y1 Y2 Y3 D1' D2' D3' X1 X2 X3). unfold E. lra. }
+  pose proof (plain_error_at tslope slope 7 (low tslope) Hs BS eq_refl eq_refl ltac:(lia)) as Q.
+  assert (LT : bp (low tslope) <= / 1000000000000 * bp (-460)) by (apply bp_part12; vm_compute; discriminate).
+  assert (Y : (1 - 21 * u) * (ERROR * E * E * reach) <= e).
+  { apply bound_low with (t := tleans); auto.
+    - terms. cbn [bounded]. repeat split; auto. unfold ERROR. constant.
+    - vm_compute. lia.
+    - terms. cbn [size]. fold e1 e2 e3 f1 f2 f3. rewrite (Rabs_pos_eq ERROR) by (unfold ERROR; rewrite u_val; lra).
+      rewrite (Rabs_pos_eq reach) by lra. reflexivity.
+    - vm_compute. discriminate.
+    - replace (u * (ERROR * E * E * reach)) with (ERROR * (u * (reach * (E * E)))) by ring.
+      apply Rle_trans with (u * bp (-460)); [unfold u; rewrite <- bp_add; apply bp_le; lia|]. unfold ERROR.
+      pose proof u_pos. pose proof (bp_pos (-460)). apply Rmult_le_compat; lra. }
+  assert (R : Rabs (slope - exact tslope) <= e); [|split; [exact R | now apply certain_sign]].
+  pose proof (bp_pos (-460)). eapply Rle_trans; [|exact Y]. eapply Rle_trans; [exact Q|].
+  replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold ERROR; ring).
+  assert ((7 + / 1000) * u * size tslope <= (7 + / 1000) * (u * (reach * (E * E)))).
+  { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
+  set (G := u * (reach * (E * E))) in *. clearbody G. rewrite u_val in *. lra.
+Qed.
 End Triangle.
+
+(* `height_sign`: n . (a - o) for edges and a - o with E S < 2^300; the bound 18 u E (E S) + 2^-500, with E and S within four
+   roundings and its own roundings. *)
+Section Height.
+Variables a1 a2 a3 b1 b2 b3 c1 c2 c3 o1 o2 o3 E S : R.
+Let e1 := b1 - a1. Let e2 := b2 - a2. Let e3 := b3 - a3. Let f1 := c1 - a1. Let f2 := c2 - a2. Let f3 := c3 - a3.
+Let s1 := a1 - o1. Let s2 := a2 - o2. Let s3 := a3 - o3.
+Hypotheses (E0 : 0 <= E) (S0 : 0 <= S) (Hm : Rmax (Rabs e1) (Rabs f1) + Rmax (Rabs e2) (Rabs f2) + Rmax (Rabs e3) (Rabs f3) <= E)
+  (Hs : Rabs s1 + Rabs s2 + Rabs s3 <= S).
+Hypotheses (He1 : Rabs e1 <= bp 301) (He2 : Rabs e2 <= bp 301) (He3 : Rabs e3 <= bp 301)
+  (Hf1 : Rabs f1 <= bp 301) (Hf2 : Rabs f2 <= bp 301) (Hf3 : Rabs f3 <= bp 301)
+  (Hs1 : Rabs s1 <= bp 452) (Hs2 : Rabs s2 <= bp 452) (Hs3 : Rabs s3 <= bp 452).
+Definition theight_of_plane :=
+  let e x y := D x y 301 in
+  tdot (tminor (e b2 a2) (e c3 a3) (e b3 a3) (e c2 a2)) (tminor (e b3 a3) (e c1 a1) (e b1 a1) (e c3 a3))
+    (tminor (e b1 a1) (e c2 a2) (e b2 a2) (e c1 a1)) (D a1 o1 452) (D a2 o2 452) (D a3 o3 452).
+Theorem UNDERFLOW_holds : forall h e, plain theight_of_plane h ->
+  (1 - 32 * u) * (PLANE_ERROR * (E * (E * S)) + UNDERFLOW) <= e ->
+  (h > e -> 0 < exact theight_of_plane) /\ (h < - e -> exact theight_of_plane < 0).
+Proof.
+  intros h e Hh He. apply certain_sign.
+  assert (B : bounded theight_of_plane) by (unfold theight_of_plane, tdot, tminor; cbn [bounded]; repeat split; assumption).
+  pose proof (plain_error_at _ h 8 (low theight_of_plane) Hh B eq_refl eq_refl ltac:(lia)) as Q.
+  assert (LT : bp (low theight_of_plane) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
+  assert (Z : size theight_of_plane <= E * (E * S)).
+  { unfold theight_of_plane, tdot, tminor. cbn [size]. fold e1 e2 e3 f1 f2 f3 s1 s2 s3.
+    assert (X1 : 0 <= Rabs e1 <= Rmax (Rabs e1) (Rabs f1)) by (split; [apply Rabs_pos | apply Rmax_l]).
+    assert (X2 : 0 <= Rabs e2 <= Rmax (Rabs e2) (Rabs f2)) by (split; [apply Rabs_pos | apply Rmax_l]).
+    assert (X3 : 0 <= Rabs e3 <= Rmax (Rabs e3) (Rabs f3)) by (split; [apply Rabs_pos | apply Rmax_l]).
+    assert (Y1 : 0 <= Rabs f1 <= Rmax (Rabs e1) (Rabs f1)) by (split; [apply Rabs_pos | apply Rmax_r]).
+    assert (Y2 : 0 <= Rabs f2 <= Rmax (Rabs e2) (Rabs f2)) by (split; [apply Rabs_pos | apply Rmax_r]).
+    assert (Y3 : 0 <= Rabs f3 <= Rmax (Rabs e3) (Rabs f3)) by (split; [apply Rabs_pos | apply Rmax_r]).
+    pose proof (Rabs_pos s1). pose proof (Rabs_pos s2). pose proof (Rabs_pos s3).
+    assert (Z1 : 0 <= Rabs s1 <= S) by lra. assert (Z2 : 0 <= Rabs s2 <= S) by lra. assert (Z3 : 0 <= Rabs s3 <= S) by lra.
+    pose proof (permanent _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ X1 X2 X3 Z1 Z2 Z3 Y1 Y2 Y3) as K.
+    set (m1 := Rmax (Rabs e1) (Rabs f1)) in *. set (m2 := Rmax (Rabs e2) (Rabs f2)) in *. set (m3 := Rmax (Rabs e3) (Rabs f3)) in *.
+    assert (S * ((m1 + m2 + m3) * (m1 + m2 + m3)) <= S * (E * E)) by (apply Rmult_le_compat_l; [assumption|]; apply Rmult_le_compat; lra).
+    lra. }
+  assert (G0 : 0 <= E * (E * S)) by (repeat apply Rmult_le_pos; assumption).
+  eapply Rle_trans; [exact Q|]. unfold PLANE_ERROR in He. set (T := size _) in *. set (G := E * (E * S)) in *. clearbody T G.
+  rewrite u_val in *. lra.
+Qed.
+End Height.
