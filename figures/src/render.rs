@@ -179,12 +179,15 @@ impl<'a> RayTile<'a> {
         for (rays, hits) in self.rays.chunks_exact(in_pixel).zip(self.hits.chunks_exact(in_pixel)) {
             let (now, later) = shaded.split_at(hits.iter().flatten().count());
             shaded = later;
-            // ⌊maxval hits / n + ½⌋
-            let (hits_here, most) = (now.len() as u64, u64::from(certifier.maxval));
-            let alpha = (2 * most * hits_here + in_pixel as u64) / (2 * in_pixel as u64);
-            let alpha = u16::try_from(alpha).expect("a share of maxval");
+            let alpha = if certifier.scene.transparent { share(now.len(), in_pixel, certifier.maxval) } else { 0 };
             self.pixels.push((certifier.pixel(rays, hits, now), alpha));
         }
         self.shaded.len() as u64
     }
+}
+
+/// `⌊maxval hits / rays + ½⌋`: the alpha of a pixel.
+fn share(hits: usize, rays: usize, maxval: u16) -> u16 {
+    let (hits, rays) = (hits as u64, rays as u64);
+    u16::try_from((2 * u64::from(maxval) * hits + rays) / (2 * rays)).expect("a share of maxval")
 }

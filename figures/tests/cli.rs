@@ -46,18 +46,30 @@ fn scene(figure: u8) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/figure-{figure}.toml"))
 }
 
+/// Checks that a picture is the golden one of this name, or makes it that.
+fn check_golden(name: &str, found: &[u8]) {
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        fs::write(&golden, found).unwrap();
+    }
+    assert!(found == fs::read(&golden).unwrap(), "the picture differs from {}", golden.display());
+}
+
 #[test]
 fn each_figure_is_its_golden_picture() {
     let folder = folder();
     for figure in 1..=6 {
-        let name = format!("figure-{figure}.ppm");
         let found = stdout(folder.path(), &[&figure.to_string(), "--size", "64x48", "-o", "-"]);
-        let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(&name);
-        if std::env::var_os("UPDATE_GOLDEN").is_some() {
-            fs::write(&golden, &found).unwrap();
-        }
-        assert!(found == fs::read(&golden).unwrap(), "figure {figure} differs from {}", golden.display());
+        check_golden(&format!("figure-{figure}.ppm"), &found);
     }
+}
+
+#[test]
+fn a_molecule_on_the_stage_is_its_golden_picture() {
+    let folder = folder();
+    fs::write(folder.path().join("a.pdb"), include_str!("../../tests/fuzz/seeds/pdb/ions.pdb")).unwrap();
+    let arguments = ["render", "a.pdb", "--size", "64x48", "--format", "ppm", "-o", "-"];
+    check_golden("stage.ppm", &stdout(folder.path(), &arguments));
 }
 
 #[test]

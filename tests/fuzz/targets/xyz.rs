@@ -7,8 +7,9 @@ use figures::import::xyz::read;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    let known = read(bytes, bytes.len() as u64, "fuzz.xyz", Options::default());
-    let unknown = read(bytes, 0, "fuzz.xyz", Options::default());
+    let options = Options { frame: bytes.len() as u64 % 3 + 1, ..Options::default() };
+    let known = read(bytes, bytes.len() as u64, "fuzz.xyz", options);
+    let unknown = read(bytes, 0, "fuzz.xyz", options);
     match (known, unknown) {
         (Ok(known), Ok(unknown)) => {
             assert_eq!(known.spheres, unknown.spheres);
