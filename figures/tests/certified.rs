@@ -365,9 +365,14 @@ impl Case {
 
     /// The picture in bands of so many rows.
     fn draw(&self, maxval: u16, method: Method, band: u32) -> Rows {
+        self.draw_on(false, maxval, method, band)
+    }
+
+    /// The same, without a background if `transparent`.
+    fn draw_on(&self, transparent: bool, maxval: u16, method: Method, band: u32) -> Rows {
         let folder = folder();
         let [width, height, samples] = self.size;
-        let scene = self.load(folder.path());
+        let scene = Scene { transparent, ..self.load(folder.path()) };
         let view = scene.view(Size { width, height, samples }).unwrap();
         let renderer = Renderer::with(scene, method);
         let bands = (0..height).step_by(band as usize).map(|top| top..height.min(top + band));
@@ -419,6 +424,28 @@ fn the_bytes_depend_neither_on_tiles_nor_on_threads_nor_on_the_tree() {
             }
         }
     }
+}
+
+#[test]
+fn without_a_background_the_bytes_are_the_same_where_all_samples_hit() {
+    let mut partly = 0;
+    for case in &CASES {
+        let opaque = case.draw(65535, Method::Bvh, 5);
+        let clear = case.draw_on(true, 65535, Method::Bvh, 5);
+        assert_eq!((clear.rays, clear.hits, total(clear.certified)), (opaque.rays, opaque.hits, opaque.rays));
+        let mut hits = 0.0;
+        for (clear, opaque) in clear.samples.chunks_exact(4).zip(opaque.samples.chunks_exact(3)) {
+            match clear[3] {
+                65535 => assert_eq!(clear[..3], *opaque, "{}", case.name),
+                0 => assert_eq!(clear[..3], [0; 3], "{}", case.name),
+                _ => partly += 1,
+            }
+            hits += f64::from(clear[3]) / 65535.0;
+        }
+        let samples = f64::from(case.size[2] * case.size[2]);
+        assert!((hits * samples - opaque.hits as f64).abs() < 0.1, "{}: {hits}", case.name);
+    }
+    assert!(partly > 20, "{partly}");
 }
 
 #[test]
