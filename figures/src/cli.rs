@@ -24,8 +24,11 @@ use crate::{ask, convert, draw, generate, memory};
 #[command(
     name = "figures",
     version,
-    about = "Draws the six figures of the report, and scenes of your own",
-    after_help = "Without an argument, asks for the number of the figure.\n\
+    about = "Draws the six figures of the report, and scenes, molecules and meshes of your own",
+    after_help = "Examples:\n  \
+                  figures all                                   the six figures, as PPM, into out/\n  \
+                  figures render molecule.pdb -o molecule.png   `figures help render` has more\n\
+                  Without an argument, asks for the number of the figure.\n\
                   Colors from 0 to 1 are stored as they are, those of a texture too: no gamma.",
     args_conflicts_with_subcommands = true
 )]

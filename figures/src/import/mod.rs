@@ -192,6 +192,13 @@ mod tests {
             let mut source = Source::open(&folder.path().join(name)).unwrap();
             assert!(objects(&mut source, None).is_none(), "{name}");
         }
+        // A little that unpacks to much: 300 members of a megabyte of remarks each.
+        let remarks =
+            "REMARK and so on, as far as a line goes in such a file, which is eighty columns.\n".repeat(12_500);
+        let path = folder.path().join("much.pdb.gz");
+        std::fs::write(&path, packed(remarks.as_bytes()).repeat(300)).unwrap();
+        let error = oracle::files::full_message(&load_spheres(&path, Options::default()).unwrap_err());
+        assert!(error.ends_with("it unpacks to more than 256 MiB; unpack it first"), "{error}");
         // Cut short or spoiled, a packed file is an error of reading.
         let whole = packed(b"1\n\nC 1 2 3\n");
         for bad in [&whole[..whole.len() - 6], &[&whole[..], b"more"].concat()[..], &whole[..12]] {

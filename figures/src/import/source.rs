@@ -10,8 +10,9 @@ use super::foreign::{self, Known};
 use super::problem::{FileProblem, ImportError};
 use crate::text::file_name;
 
-/// A packed file is read up to this size: a few kilobytes can unpack to anything.
-const MOST_UNPACKED: u64 = 1 << 30;
+/// A packed file is read up to this size, or this many times its own: a few kilobytes can unpack to anything.
+const MOST_UNPACKED: u64 = 256 << 20;
+const MOST_TIMES: u64 = 64;
 /// So many bytes at the start tell the format.
 const START: u64 = 4096;
 
@@ -83,7 +84,8 @@ impl Source {
         let mut ending = foreign::ending(path);
         if start.starts_with(b"\x1f\x8b") {
             let unpacked = MultiGzDecoder::new(BufReader::new(Cursor::new(start).chain(rest)));
-            rest = Box::new(Bounded { source: unpacked, left: MOST_UNPACKED });
+            let most = MOST_UNPACKED.max(MOST_TIMES.saturating_mul(length));
+            rest = Box::new(Bounded { source: unpacked, left: most, most });
             (start, length) = (Vec::new(), 0);
             rest.by_ref().take(START).read_to_end(&mut start).map_err(failed)?;
             if ending == "gz" {
@@ -152,13 +154,14 @@ impl Source {
 struct Bounded<R> {
     source: R,
     left: u64,
+    most: u64,
 }
 
 impl<R: Read> Read for Bounded<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.source.read(buffer)?;
         self.left = self.left.checked_sub(read as u64).ok_or_else(|| {
-            io::Error::other(format!("it unpacks to more than {} MiB; unpack it first", MOST_UNPACKED >> 20))
+            io::Error::other(format!("it unpacks to more than {} MiB; unpack it first", self.most >> 20))
         })?;
         Ok(read)
     }
@@ -170,8 +173,8 @@ mod tests {
 
     #[test]
     fn a_bounded_reader_gives_so_many_bytes_and_no_more() {
-        let read = |left| Bounded { source: &[7; 10][..], left }.read_to_end(&mut Vec::new());
+        let read = |left| Bounded { source: &[7; 10][..], left, most: 5 << 20 }.read_to_end(&mut Vec::new());
         assert_eq!(read(10).unwrap(), 10);
-        assert_eq!(read(9).unwrap_err().to_string(), "it unpacks to more than 1024 MiB; unpack it first");
+        assert_eq!(read(9).unwrap_err().to_string(), "it unpacks to more than 5 MiB; unpack it first");
     }
 }
