@@ -34,7 +34,7 @@ impl SplitMix {
 /// Names accepted by [`spheres`].
 pub const SCENES: [&str; 10] =
     ["uniform", "flake", "packed", "mixed", "line", "lattice", "heights", "walls", "stars", "decades"];
-/// Names accepted by [`mesh`].
+/// Names accepted by [`mesh`] for every size.
 pub const MESHES: [&str; 4] = ["globe", "terrain", "soup", "city"];
 
 /// All scenes lie in a cube of about side 2 around (0, 0, -3), so the camera
@@ -226,6 +226,44 @@ fn unit_vector(rng: &mut SplitMix) -> [f32; 3] {
 
 /// Corners and triangles.
 pub type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+/// A ball of radius 1 around (0, 0, -3): an icosahedron, each face cut in four `cuts` times; closed.
+pub fn icosphere(cuts: u32) -> Mesh {
+    let (a, b) = (1.0, (1.0 + 5f64.sqrt()) / 2.0);
+    let mut corners: Vec<[f64; 3]> = Vec::new();
+    for (x, y) in [(-a, b), (a, b), (-a, -b), (a, -b)] {
+        corners.extend([[x, y, 0.0], [0.0, x, y], [y, 0.0, x]]);
+    }
+    let near = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>() < 4.1;
+    let mut faces = Vec::new();
+    for i in 0..12usize {
+        for j in i + 1..12 {
+            for k in j + 1..12 {
+                let [p, q, r] = [corners[i], corners[j], corners[k]];
+                if near(p, q) && near(q, r) && near(r, p) {
+                    faces.push([i, j, k]);
+                }
+            }
+        }
+    }
+    let mut middles = std::collections::HashMap::new();
+    for _ in 0..cuts {
+        let mut middle = |p: usize, q: usize| {
+            *middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
+                corners.push(std::array::from_fn(|k| 0.5 * (norm(corners[p])[k] + norm(corners[q])[k])));
+                corners.len() - 1
+            })
+        };
+        let cut = |&[p, q, r]: &[usize; 3]| {
+            let [a, b, c] = [middle(p, q), middle(q, r), middle(r, p)];
+            [[p, a, c], [a, q, b], [c, b, r], [a, b, c]]
+        };
+        faces = faces.iter().flat_map(cut).collect();
+    }
+    let place = |&p: &[f64; 3]| norm(p).map(|x| x as f32);
+    let corners = corners.iter().map(place).map(|[x, y, z]| [x, y, z - 3.0]).collect();
+    (corners, faces.iter().map(|face| face.map(|i| i as u32)).collect())
+}
 
 /// About `n` triangles in the place of the spheres' cube:
 ///

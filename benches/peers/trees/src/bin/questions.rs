@@ -16,6 +16,45 @@ fn bytes<const N: usize>(rows: impl IntoIterator<Item = [[u8; 4]; N]>) -> Vec<u8
     rows.into_iter().flatten().flatten().collect()
 }
 
+/// What is lost and wrong on a closed mesh of 81,920 triangles, from inside: rays to every vertex and to the middle of
+/// every edge, and points 2^-24 in front of and behind every twentieth face.
+fn errors(folder: &Path) -> std::io::Result<()> {
+    let mesh = workload::icosphere(6);
+    let triangles = ours::triangles(&mesh);
+    let tree = Bvh::new(Vec::new(), triangles.clone());
+    assert!(tree.open_edges().is_empty(), "an icosphere is closed");
+    let embree = embree::every_hit(&mesh).expect("Embree 4: set EMBREE4 to its library");
+    let mut rng = SplitMix(0x1C0);
+    let (mut rays, mut lost, mut wrong) = (0, [0; 2], [0; 2]);
+    let mut crossings = Vec::new();
+    for triangle in &mesh.1 {
+        let [a, b, _] = triangle.map(|i| mesh.0[i as usize]);
+        for aim in [a, std::array::from_fn(|k| 0.5 * (a[k] + b[k]))] {
+            let origin = [0.3 * rng.signed(), 0.3 * rng.signed(), 0.3 * rng.signed() - 3.0];
+            let ray = workload::Ray { origin, direction: std::array::from_fn(|k| aim[k] - origin[k]) };
+            tree.crossings(&ours::widen(&ray), &mut crossings);
+            for (i, found) in [crossings.len() as u32, embree(&ray)].into_iter().enumerate() {
+                lost[i] += u32::from(found == 0);
+                wrong[i] += u32::from(found != 1);
+            }
+            rays += 1;
+        }
+    }
+    println!("from inside\t{rays} rays\tlost: ours {}, Embree 4 robust {}\tnot one crossing: ours {}, Embree 4 {}", lost[0], lost[1], wrong[0], wrong[1]);
+    let points: Vec<DVec3> = (triangles.iter().step_by(20))
+        .flat_map(|triangle| {
+            let [a, b, c] = triangle.vertices();
+            let normal = (b - a).cross(c - a).normalize();
+            [-1.0, 1.0].map(|side| (a + b + c) / 3.0 + side * 2f64.powi(-24) * normal)
+        })
+        .collect();
+    let row = |point: &DVec3| point.to_array().into_iter().flat_map(f64::to_le_bytes).collect::<Vec<u8>>();
+    fs::write(folder.join("near.points"), points.iter().flat_map(row).collect::<Vec<u8>>())?;
+    fs::write(folder.join("near.inside"), points.iter().map(|&p| u8::from(tree.contains(p) != Side::Outside)).collect::<Vec<u8>>())?;
+    fs::write(folder.join("near.corners"), bytes(mesh.0.iter().map(|p| p.map(f32::to_le_bytes))))?;
+    fs::write(folder.join("near.triangles"), bytes(mesh.1.iter().map(|t| t.map(u32::to_le_bytes))))
+}
+
 fn main() -> std::io::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().expect("a folder for the meshes, rays and points");
@@ -27,6 +66,7 @@ fn main() -> std::io::Result<()> {
     }
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     println!("# {}", describe_embree());
+    errors(folder)?;
     println!("mesh\ttriangles\tquestion\tcontestant\tM/s\tours/theirs\tbatch/theirs\tsum\tdiffering");
     for size in sizes {
         let mesh = workload::mesh("globe", size);

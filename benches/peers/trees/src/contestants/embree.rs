@@ -397,7 +397,7 @@ pub fn mesh(version: u32, mesh: &Mesh, robust: bool, tiles: bool) -> Option<Box<
 /// How often a ray meets a mesh by Embree 4 with its robust flag: it is asked again from the float after each hit.
 pub fn every_hit(mesh: &Mesh) -> Option<impl Fn(&Ray) -> u32> {
     let (corners, triangles) = mesh;
-    let variant = Variant { config: "threads=1", quality: HIGH, flags: ROBUST, mode: Mode::Single, sorted: false };
+    let variant = Variant { config: "threads=1", quality: MEDIUM, flags: ROBUST, mode: Mode::Single, sorted: false };
     let vertices = corners.iter().flatten().copied().chain([0.0]).collect::<Vec<f32>>();
     let scene = Embree::commit(api(4)?, vertices, triangles.to_vec(), Vec::new(), variant);
     let call = scene.api.single("rtcIntersect1");
