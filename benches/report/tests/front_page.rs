@@ -5,7 +5,8 @@ const REPORT: &str = include_str!("../../../docs/report/report.md");
 
 /// The table about kernels: its lines as cells, the heads of the columns first.
 fn kernels(page: &str) -> Vec<Vec<&str>> {
-    let lines = page.lines().skip_while(|line| !line.starts_with("| kernel |")).take_while(|line| line.starts_with('|'));
+    let lines =
+        page.lines().skip_while(|line| !line.starts_with("| kernel |")).take_while(|line| line.starts_with('|'));
     lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect()).collect()
 }
 

@@ -196,6 +196,9 @@ impl Leaves {
 pub(crate) trait Query {
     type Answer: Default;
 
+    /// Whether any hit will do, the nearest or another.
+    const ANY: bool = false;
+
     /// The query at its beginning; it may use what the place for the answer holds.
     fn begin(place: &mut Self::Answer) -> Self;
 
@@ -223,6 +226,7 @@ pub(crate) struct Any(bool);
 
 impl Query for Any {
     type Answer = bool;
+    const ANY: bool = true;
 
     #[inline(always)]
     fn begin(_: &mut bool) -> Self {

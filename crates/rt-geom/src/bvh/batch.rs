@@ -121,7 +121,7 @@ pub(super) fn fly<S: Simd, Q: Query>(
     let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
     let mut tours: Vec<Tour> = slots.iter().filter_map(|_| tree.crown.as_ref().map(Tour::new)).collect();
     for (at, slot) in slots.iter_mut().enumerate() {
-        if let Some(list) = proceed(simd, slot, false, tours.get_mut(at), tree, within, &mut waiting, answers) {
+        if let Some(list) = launch(simd, slot, tours.get_mut(at), tree, within, &mut waiting, answers) {
             lists.push(list, at);
         }
     }
@@ -176,7 +176,14 @@ pub(super) fn fly<S: Simd, Q: Query>(
         for &at in &done[..len] {
             let at = usize::from(at);
             let slot = &mut slots[at];
-            match proceed(simd, slot, true, tours.get_mut(at), tree, within, &mut waiting, answers) {
+            if let Some(tour) = tours.get_mut(at)
+                && let Some(list) = travel(simd, slot, tour, tree)
+            {
+                lists.push(list, at);
+                continue;
+            }
+            answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
+            match launch(simd, slot, tours.get_mut(at), tree, within, &mut waiting, answers) {
                 Some(list) => lists.push(list, at),
                 None => flying -= 1,
             }
@@ -184,46 +191,54 @@ pub(super) fn fly<S: Simd, Q: Query>(
     }
 }
 
-/// Takes the ray of a slot on to the next region that it may meet, if there is a crown; after the last it answers, and
-/// the next ray takes the place. Returns the list for what is there to do; `None` if no ray is left.
+/// Puts the next ray that may meet anything into the slot, and returns the list for it; `None` if no ray is left.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "a part of the loop above, inlined into it")]
-fn proceed<'a, S: Simd, Q: Query>(
+fn launch<'a, S: Simd, Q: Query>(
     simd: S,
     slot: &mut Slot<'a, Q>,
-    mut is_taken: bool,
     mut tour: Option<&mut Tour>,
     tree: &Bvh,
     within: &Range<f64>,
     waiting: &mut impl Iterator<Item = (usize, &'a Ray)>,
     answers: &mut [Q::Answer],
 ) -> Option<usize> {
-    let mut only = None;
-    loop {
-        if is_taken {
-            let region = match &mut tour {
-                None => only.take(),
-                Some(tour) => next_region(simd, tour, tree, &slot.ray, &mut slot.query, &mut Visits::default()),
-            };
-            if let Some(&Region { frame, root }) = region {
-                if slot.line.set(simd, &frame, &slot.ray) {
-                    slot.line.shorten(slot.query.limit());
-                    slot.at = root;
-                    slot.height = 0;
-                    return Some(root.kind() as usize);
-                }
-                continue;
-            }
-            answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
-        }
-        let ray;
-        (slot.target, ray) = waiting.next()?;
+    let only = tree.regions.first();
+    for (target, ray) in waiting {
         slot.ray = PreparedRay::new(ray, within.clone());
-        slot.query = Q::begin(&mut answers[slot.target]);
-        is_taken = true;
-        only = tree.regions.first();
+        slot.query = Q::begin(&mut answers[target]);
+        slot.target = target;
         if let (Some(tour), Some(crown)) = (&mut tour, &tree.crown) {
             tour.begin(crown, &slot.ray);
+            if let Some(list) = travel(simd, slot, tour, tree) {
+                return Some(list);
+            }
+        } else if let Some(Region { frame, root }) = only
+            && slot.line.set(simd, frame, &slot.ray)
+        {
+            slot.at = *root;
+            slot.height = 0;
+            return Some(root.kind() as usize);
+        }
+        answers[target] = slot.query.answer(&tree.leaves, &slot.ray);
+    }
+    None
+}
+
+/// Takes the ray of a slot on to the next region below the crown that it may meet, and returns the list for it.
+#[cold]
+#[inline(never)]
+fn travel<S: Simd, Q: Query>(simd: S, slot: &mut Slot<Q>, tour: &mut Tour, tree: &Bvh) -> Option<usize> {
+    loop {
+        let region = next_region(simd, tour, tree, &slot.ray, &mut slot.query, &mut Visits::default())?;
+        let meets = simd.vectorize(
+            #[inline(always)]
+            || slot.line.set(simd, &region.frame, &slot.ray),
+        );
+        if meets {
+            slot.line.shorten(slot.query.limit());
+            slot.at = region.root;
+            slot.height = 0;
+            return Some(region.root.kind() as usize);
         }
     }
 }

@@ -11,6 +11,7 @@ use glam::DVec3;
 use rt_math::exact::{U, power_of_two};
 
 use super::node::WIDTH;
+use crate::leaf::Query;
 use crate::ray::PreparedRay;
 use crate::simd::dispatch;
 use crate::{Sphere, Triangle, Visits};
@@ -166,7 +167,7 @@ impl Crown {
 type Pending = (f64, Part);
 
 /// Entries that a usual crown needs.
-const SMALL_STACK: usize = 32;
+const SMALL_STACK: usize = 24;
 
 /// The way of one ray through a crown.
 #[derive(Clone, Debug)]
@@ -225,14 +226,21 @@ impl Tour {
         if self.large.is_empty() { &mut self.small } else { &mut self.large }
     }
 
-    /// The nearest region or primitive that is left and that the ray may enter with a parameter of at most `limit`.
+    /// The nearest region or primitive that is left and that the ray may enter with a parameter of at most `limit`;
+    /// where any hit will do, first the primitives, which cost less.
     #[inline(never)]
-    pub(super) fn next(&mut self, crown: &Crown, level: Level, limit: f64, visits: &mut Visits) -> Option<Part> {
-        dispatch!(level, simd => self.advance(simd, crown, limit, visits))
+    pub(super) fn next<Q: Query>(
+        &mut self,
+        crown: &Crown,
+        level: Level,
+        limit: f64,
+        visits: &mut Visits,
+    ) -> Option<Part> {
+        dispatch!(level, simd => self.advance(simd, crown, Q::ANY, limit, visits))
     }
 
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, crown: &Crown, limit: f64, visits: &mut Visits) -> Option<Part> {
+    fn advance<S: Simd>(&mut self, simd: S, crown: &Crown, any: bool, limit: f64, visits: &mut Visits) -> Option<Part> {
         while self.height > 0 {
             self.height -= 1;
             let height = self.height;
@@ -252,6 +260,9 @@ impl Tour {
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
+                if any && matches!(node.children[lane], Part::Sphere(_) | Part::Triangle(_)) {
+                    enters[lane] = f64::NEG_INFINITY;
+                }
                 let stack = self.stack();
                 let mut hole = top;
                 // Of two that are entered together the smaller comes first.
@@ -272,7 +283,7 @@ impl Tour {
     fn meet<S: Simd>(&self, simd: S, node: &Node, enters: &mut [f64; WIDTH]) -> u32 {
         let mut met = 0;
         let (start, end) = (f64x8::splat(simd, self.within.start), f64x8::splat(simd, self.within.end));
-        for (half, enters) in enters.as_chunks_mut::<8>().0.iter_mut().enumerate() {
+        for (half, enters) in enters.as_chunks_mut::<8>().0.iter_mut().enumerate().take(node.len.div_ceil(8)) {
             let near = |axis: usize| (self.near[axis], axis, 8 * half);
             let far = |axis: usize| ((self.near[axis] + 3) % 6, axis, 8 * half);
             let enter = self.plane(simd, node, near(0)).max(self.plane(simd, node, near(1)));
@@ -303,12 +314,13 @@ mod tests {
 
     use super::*;
     use crate::Ray;
+    use crate::leaf::Closest;
 
     /// All that a tour gives.
     fn met(crown: &Crown, level: Level, ray: &Ray, within: Range<f64>) -> Vec<Part> {
         let mut tour = Tour::new(crown);
         tour.begin(crown, &PreparedRay::new(ray, within));
-        std::iter::from_fn(|| tour.next(crown, level, f64::INFINITY, &mut Visits::default())).collect()
+        std::iter::from_fn(|| tour.next::<Closest>(crown, level, f64::INFINITY, &mut Visits::default())).collect()
     }
 
     /// Flat boxes of which one corner is met, within a range of one double, at any scale.

@@ -166,14 +166,16 @@ fn place_of(count: usize) -> u32 {
 
 /// Whether a leaf block holds more small primitives close together than its frame resolves.
 fn is_crowded(items: &[Item]) -> bool {
-    items.par_chunks(WIDTH).any(|block| {
-        let fine = |item: &&Item| item.twin_of().is_none() && item.size() < FINEST;
-        block.iter().filter(fine).count() >= CROWD
-            && block.iter().filter(fine).any(|a| {
-                let near = |b: &&Item| a.distance(b) < FINEST;
-                block.iter().filter(fine).filter(near).count() >= CROWD
-            })
-    })
+    items.par_chunks(WIDTH).any(is_crowded_block)
+}
+
+fn is_crowded_block(block: &[Item]) -> bool {
+    let fine = |item: &&Item| item.twin_of().is_none() && item.size() < FINEST;
+    block.iter().filter(fine).count() >= CROWD
+        && block.iter().filter(fine).any(|a| {
+            let near = |b: &&Item| a.distance(b) < FINEST;
+            block.iter().filter(fine).filter(near).count() >= CROWD
+        })
 }
 
 /// The places of what stays in a group, and of the groups within it.
@@ -222,20 +224,25 @@ impl Parts {
 /// Whether some of the primitives, and not all equal, are closer together than the frame resolves.
 fn is_too_fine(group: &Group, items: &mut [Item], cuts: u32) -> bool {
     let extent = bounds_of(items);
-    if items.len() < CROWD || cuts == MAX_CUTS {
-        false
-    } else if extent.size() < FINEST {
-        let mut different: Vec<Shape> = Vec::new();
-        items.iter().any(|item| {
-            let shape = group.shape(item.index());
-            if !different.contains(&shape) {
-                different.push(shape);
-            }
-            different.len() == CROWD
-        })
-    } else if let Some((a, b)) = BinCut::new(items, &extent).part(items) {
+    if items.len() <= WIDTH || extent.size() < FINEST {
+        is_crowded_block(items) && differ(group, items)
+    } else if cuts < MAX_CUTS
+        && let Some((a, b)) = BinCut::new(items, &extent).part(items)
+    {
         is_too_fine(group, a, cuts + 1) || is_too_fine(group, b, cuts + 1)
     } else {
         false
     }
+}
+
+/// Whether there are several different primitives.
+fn differ(group: &Group, items: &[Item]) -> bool {
+    let mut different: Vec<Shape> = Vec::new();
+    items.iter().any(|item| {
+        let shape = group.shape(item.index());
+        if !different.contains(&shape) {
+            different.push(shape);
+        }
+        different.len() == CROWD
+    })
 }

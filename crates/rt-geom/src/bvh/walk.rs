@@ -9,7 +9,7 @@ use std::ops::Range;
 use fearless_simd::Simd;
 
 use super::Bvh;
-use super::crown::{Part, Tour};
+use super::crown::{Crown, Part, Tour};
 use super::cull::{CullRay, meet_boxes};
 use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
 use crate::leaf::{Leaves, Query};
@@ -63,34 +63,36 @@ pub(super) fn cast<S: Simd, Q: Query>(
 ) -> Q::Answer {
     let is_open = is_open(&within);
     let prepared = PreparedRay::new(ray, within);
-    let mut line = CullRay::EVERYTHING;
-    let mut tour = None;
-    let mut region = tree.regions.first().filter(|_| is_open);
-    if is_open && let Some(crown) = &tree.crown {
-        let tour = tour.insert(Tour::new(crown));
-        tour.begin(crown, &prepared);
-        region = next_region(simd, tour, tree, &prepared, &mut query, visits);
-    }
-    let (mut small, mut usual, mut large);
-    let stack = if tree.stack <= SMALL_STACK {
-        small = [0; SMALL_STACK];
-        &mut small[..]
-    } else if tree.stack <= STACK {
-        usual = [0; STACK];
-        &mut usual[..]
-    } else {
-        large = vec![0; tree.stack];
-        &mut large[..]
-    };
-    while let Some(&Region { frame, root }) = region {
-        if line.set(simd, &frame, &prepared) {
-            line.shorten(query.limit());
-            walk(simd, tree, root, &prepared, &mut query, &mut line, stack, visits);
-        }
-        let Some(tour) = &mut tour else { break };
-        region = next_region(simd, tour, tree, &prepared, &mut query, visits);
+    if !is_open {
+        // Nothing is met.
+    } else if let Some(crown) = &tree.crown {
+        travel(simd, tree, crown, &prepared, &mut query, visits);
+    } else if let Some(region) = tree.regions.first() {
+        visit(simd, tree, region, &prepared, &mut query, visits);
     }
     query.answer(&tree.leaves, &prepared)
+}
+
+/// Takes a ray through all regions below a crown that it may meet. (With the instruction set again, because it is not
+/// inlined: a scene of one scale shall not pay for it.)
+#[cold]
+#[inline(never)]
+fn travel<S: Simd, Q: Query>(
+    simd: S,
+    tree: &Bvh,
+    crown: &Crown,
+    prepared: &PreparedRay,
+    query: &mut Q,
+    visits: &mut Visits,
+) {
+    let mut tour = Tour::new(crown);
+    tour.begin(crown, prepared);
+    while let Some(region) = next_region(simd, &mut tour, tree, prepared, query, visits) {
+        simd.vectorize(
+            #[inline(always)]
+            || visit(simd, tree, region, prepared, query, visits),
+        );
+    }
 }
 
 /// Takes a ray through the crown, with the primitives that stand there alone, to the next region that it may meet.
@@ -105,12 +107,10 @@ pub(super) fn next_region<'a, S: Simd, Q: Query>(
     visits: &mut Visits,
 ) -> Option<&'a Region> {
     let crown = tree.crown.as_ref()?;
+    let leaves = &tree.leaves;
     while !query.is_settled() {
-        let part = tour.next(crown, simd.level(), query.limit(), visits)?;
-        visits.tests += 1;
-        let leaves = &tree.leaves;
-        // (In the arithmetic of the instruction set, which a function that is not inlined has to be told.)
-        match part {
+        match tour.next::<Q>(crown, simd.level(), query.limit(), visits)? {
+            Part::Region(index) => return tree.regions.get(index as usize),
             Part::Sphere(place) => simd.vectorize(
                 #[inline(always)]
                 || meet::<S, Q, Sphere>(simd, query, place as usize, leaves, ray),
@@ -119,18 +119,46 @@ pub(super) fn next_region<'a, S: Simd, Q: Query>(
                 #[inline(always)]
                 || meet::<S, Q, Triangle>(simd, query, place as usize, leaves, ray),
             ),
-            Part::Region(index) => {
-                visits.tests -= 1;
-                return tree.regions.get(index as usize);
-            }
             Part::Node(_) => unreachable!("a tour goes through nodes"),
         }
+        visits.tests += 1;
     }
     None
 }
 
+/// Takes a ray through a region.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "a part of `cast`, inlined into it")]
+fn visit<S: Simd, Q: Query>(
+    simd: S,
+    tree: &Bvh,
+    region: &Region,
+    prepared: &PreparedRay,
+    query: &mut Q,
+    visits: &mut Visits,
+) {
+    let mut line = CullRay::EVERYTHING;
+    if !line.set(simd, &region.frame, prepared) {
+        return;
+    }
+    if tree.crown.is_some() {
+        line.shorten(query.limit());
+    }
+    let (mut small, mut usual, mut large);
+    let stack = if tree.stack <= SMALL_STACK {
+        small = [0; SMALL_STACK];
+        &mut small[..]
+    } else if tree.stack <= STACK {
+        usual = [0; STACK];
+        &mut usual[..]
+    } else {
+        large = vec![0; tree.stack];
+        &mut large[..]
+    };
+    walk(simd, tree, region.root, prepared, query, &mut line, stack, visits);
+}
+
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "a part of `visit`, inlined into it")]
 fn walk<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
