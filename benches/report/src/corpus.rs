@@ -19,8 +19,8 @@ use super::reference;
 /// scores of all methods.
 pub(super) fn files(rows: usize) -> Vec<(String, String)> {
     let mut scores = String::from(
-        "# What each method makes of the corpus\n\nA verdict is a hit or a miss, a number of roots, a sign, inside or outside. Values are \
-         compared where the verdict is right; the largest error is a number of doubles.\n\n\
+        "# What each method makes of the corpus\n\nA verdict is a hit or a miss, a number of roots, a sign, inside \
+         or outside. Values are compared where the verdict is right; the largest error is a number of doubles.\n\n\
          | kernel | method | wrong verdicts | not the nearest double | NaN | largest error |\n\
          | --- | --- | ---: | ---: | ---: | ---: |\n",
     );
@@ -107,7 +107,8 @@ fn root_ties(rows: usize) -> Class<3> {
     )
 }
 
-/// `t` is the difference of two doubles: the height of the origin and the radius. A ray aside by a hair hits a hair later.
+/// `t` is the difference of two doubles: the height of the origin and the radius. A ray aside by a hair hits a hair
+/// later.
 fn sphere_ties(rows: usize) -> Class<10> {
     cases::class(
         TIES,
@@ -121,8 +122,8 @@ fn sphere_ties(rows: usize) -> Class<10> {
     )
 }
 
-/// `t` is the sum of two doubles: the heights of the origin and of the plane, which is tilted by an ulp in some cases, at a
-/// point with a weight of a hair.
+/// `t` is the sum of two doubles: the heights of the origin and of the plane, which is tilted by an ulp in some cases,
+/// at a point with a weight of a hair.
 fn triangle_ties(rows: usize) -> Class<15> {
     cases::class(
         TIES,

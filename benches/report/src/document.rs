@@ -14,25 +14,26 @@ pub(super) fn blocks(report: &Report) -> Vec<Block> {
     let mut blocks = vec![
         Block::Title("Speed against error".to_owned()),
         Block::Paragraph(
-            "Which method for which need, and what the hard cases cost. Whatever comes: the method with the fewest errors over all \
-             classes of cases, and the fastest of those. If all is ordinary: the fastest whose verdicts are right and whose values are \
-             within 10⁴ ulp there."
+            "Which method for which need, and what the hard cases cost. Whatever comes: the method with the fewest \
+             errors over all classes of cases, and the fastest of those. If all is ordinary: the fastest whose \
+             verdicts are right and whose values are within 10⁴ ulp there."
                 .to_owned(),
         ),
         Block::Contents,
         which(report),
         Block::Paragraph(format!(
-            "Times are nanoseconds; \"slower\" and \"faster\" are against the textbook's method on the same cases. Ordinary magnitude: all \
-             classes but {}. An error is the number of doubles between a value and the one nearest to the exact value (ulp); verdicts \
-             are counted apart, and 0 wrong of N mean a share below 3/N with 95 % confidence. A cull may keep too much: only what it \
-             drops is wrong.",
+            "Times are nanoseconds; \"slower\" and \"faster\" are against the textbook's method on the same cases. \
+             Ordinary magnitude: all classes but {}. An error is the number of doubles between a value and the one \
+             nearest to the exact value (ulp); verdicts are counted apart, and 0 wrong of N mean a share below 3/N \
+             with 95 % confidence. A cull may keep too much: only what it drops is wrong.",
             EXTREME.map(|class| format!("\"{class}\"")).join(", ")
         )),
         Block::Paragraph(
-            "Light is judged by the byte of its brightness and a texture by the texel: \"ours\" gives those of the exact \
-             formula, at every border, and climbs to longer numbers where a bound leaves them open; \"not certified\" is the same \
-             kernel without that. A sphere whose center is three doubles is in general larger than the minimal one, whatever \
-             the method: ours encloses every sphere, exactly, with the least double that does so around its center."
+            "Light is judged by the byte of its brightness and a texture by the texel: \"ours\" gives those of the \
+             exact formula, at every border, and climbs to longer numbers where a bound leaves them open; \"not \
+             certified\" is the same kernel without that. A sphere whose center is three doubles is in general larger \
+             than the minimal one, whatever the method: ours encloses every sphere, exactly, with the least double \
+             that does so around its center."
                 .to_owned(),
         ),
         Block::Paragraph(savings(&report.trees)),
@@ -83,9 +84,9 @@ fn provenance(report: &Report) -> Block {
     let (spread, noisy, timings) = spread(report);
     let mark = if spread > NOISY { " **A noisy run: read times with care.**" } else { "" };
     Block::Paragraph(format!(
-        "Measured {year}-{month:02}-{day:02} on {} ({} threads, FMA {}, load {}), {}, version {}, commit {}: {} cases in a class, \
-         medians of {} rounds in which the methods took turns. The 95th percentile of a timing is {} above its median, in the middle; \
-         {noisy} of {timings} timings are noisy (above 10 %, marked ~).{mark}",
+        "Measured {year}-{month:02}-{day:02} on {} ({} threads, FMA {}, load {}), {}, version {}, commit {}: {} cases \
+         in a class, medians of {} rounds in which the methods took turns. The 95th percentile of a timing is {} above \
+         its median, in the middle; {noisy} of {timings} timings are noisy (above 10 %, marked ~).{mark}",
         machine.processor,
         machine.threads,
         if machine.fma { "found" } else { "not found" },
@@ -125,9 +126,10 @@ fn savings(trees: &[Growth]) -> String {
     };
     let paid = 1e9 * fast.build / (plain.time.median - fast.time.median);
     format!(
-        "**Trees**, in a cloud of {largest} spheres: the `Bvh` takes {:.0} ms to build, which {:.0} rays pay back, and finds the \
-         closest hit {} than the plain loop, {} in batches. The report's tree takes {:.0} ms and is {} if it sorts the spheres \
-         first; as they are listed, in random order, it is {}. Hits that differ from the plain loop's: {}.",
+        "**Trees**, in a cloud of {largest} spheres: the `Bvh` takes {:.0} ms to build, which {:.0} rays pay back, \
+         and finds the closest hit {} than the plain loop, {} in batches. The report's tree takes {:.0} ms and is {} \
+         if it sorts the spheres first; as they are listed, in random order, it is {}. Hits that differ from the plain \
+         loop's: {}.",
         1e3 * fast.build,
         paid.ceil(),
         faster(fast),

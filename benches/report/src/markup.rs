@@ -95,8 +95,8 @@ figure { display: inline-block; margin: 0 1rem 1rem 0; width: 45%; }
 figure img { width: 100%; image-rendering: pixelated; }
 @media (prefers-color-scheme: dark) { body { background: #16181c; } }
 @media (max-width: 40rem) {
-table, tbody, tr, td { display: block; } thead { display: none; }
-tr { border: 1px solid #8886; margin: 0.5rem 0; padding: 0.2rem 0.4rem; }
+table, thead, tbody, tr, th, td { display: block; } th { border: 0; padding: 0; } th:not(:first-child) { display: none; }
+tbody tr { border: 1px solid #8886; margin: 0.5rem 0; padding: 0.2rem 0.4rem; }
 td { border: 0; padding: 0.05rem 0; }
 td:first-child { font-weight: bold; }
 td:not(:first-child)::before { content: attr(data-head) \": \"; opacity: 0.75; }
