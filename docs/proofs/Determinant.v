@@ -28,7 +28,8 @@ Qed.
 Section Determinant.
 (* the first row, its cofactors, and these as h + l within u (|t| + |l|) *)
 Variables a0 a1 a2 c0 c1 c2 h0 h1 h2 l0 l1 l2 t0 t1 t2 : R.
-Hypotheses (C0 : Rabs (c0 - (h0 + l0)) <= u * (Rabs t0 + Rabs l0)) (C1 : Rabs (c1 - (h1 + l1)) <= u * (Rabs t1 + Rabs l1))
+Hypotheses (C0 : Rabs (c0 - (h0 + l0)) <= u * (Rabs t0 + Rabs l0)) (C1 : Rabs (c1 - (h1 + l1)) <= u * (Rabs t1 + Rabs
+  l1))
   (C2 : Rabs (c2 - (h2 + l2)) <= u * (Rabs t2 + Rabs l2)).
 Let D := a0 * c0 + a1 * c1 + a2 * c2.
 (* a_i h_i = p_i + w_i, and s + e1 + e2 = p_0 + p_1 + p_2, exactly *)
@@ -47,26 +48,33 @@ Lemma running : Rabs (D - (s + low)) <= u * size.
 Proof.
   assert (M : forall a c h l t, Rabs (c - (h + l)) <= u * (Rabs t + Rabs l) ->
     Rabs (a * (c - (h + l))) <= u * (Rabs a * (Rabs t + Rabs l))).
-  { intros a c h l t H. rewrite Rabs_mult. replace (u * (Rabs a * (Rabs t + Rabs l))) with (Rabs a * (u * (Rabs t + Rabs l))) by ring.
+  { intros a c h l t H. rewrite Rabs_mult. replace (u * (Rabs a * (Rabs t + Rabs l))) with (Rabs a * (u * (Rabs t +
+    Rabs l))) by ring.
     apply Rmult_le_compat_l; [apply Rabs_pos | assumption]. }
   pose proof (M a0 _ _ _ _ C0) as A0. pose proof (M a1 _ _ _ _ C1) as A1. pose proof (M a2 _ _ _ _ C2) as A2.
   pose proof (RN_product _ R0) as V0. fold v0 in V0. pose proof (RN_product _ R1) as V1. fold v1 in V1.
   pose proof (RN_product _ R2) as V2. fold v2 in V2.
-  pose proof (RN_plus w0 v0 Fw0 (RN_F _)) as X0'. fold x0 in X0'. pose proof (RN_plus w1 v1 Fw1 (RN_F _)) as X1'. fold x1 in X1'.
+  pose proof (RN_plus w0 v0 Fw0 (RN_F _)) as X0'. fold x0 in X0'. pose proof (RN_plus w1 v1 Fw1 (RN_F _)) as X1'.
+  fold x1 in X1'.
   pose proof (RN_plus w2 v2 Fw2 (RN_F _)) as X2'. fold x2 in X2'.
-  pose proof (RN_plus x0 x1 (RN_F _) (RN_F _)) as Y0'. fold y0 in Y0'. pose proof (RN_plus y0 x2 (RN_F _) (RN_F _)) as Y1'. fold y1 in Y1'.
-  pose proof (RN_plus e1 e2 Fe1 Fe2) as Y2'. fold y2 in Y2'. pose proof (RN_plus y1 y2 (RN_F _) (RN_F _)) as L'. fold low in L'.
+  pose proof (RN_plus x0 x1 (RN_F _) (RN_F _)) as Y0'. fold y0 in Y0'.
+  pose proof (RN_plus y0 x2 (RN_F _) (RN_F _)) as Y1'. fold y1 in Y1'.
+  pose proof (RN_plus e1 e2 Fe1 Fe2) as Y2'. fold y2 in Y2'. pose proof (RN_plus y1 y2 (RN_F _) (RN_F _)) as L'.
+  fold low in L'.
   replace (D - (s + low)) with (a0 * (c0 - (h0 + l0)) + a1 * (c1 - (h1 + l1)) + a2 * (c2 - (h2 + l2))
     + (a0 * l0 - v0) + (a1 * l1 - v1) + (a2 * l2 - v2) + (w0 + v0 - x0) + (w1 + v1 - x1) + (w2 + v2 - x2)
     + (x0 + x1 - y0) + (y0 + x2 - y1) + (e1 + e2 - y2) + (y1 + y2 - low)) by (unfold D; lra).
-  apply Rabs_le_inv in A0. apply Rabs_le_inv in A1. apply Rabs_le_inv in A2. apply Rabs_le_inv in V0. apply Rabs_le_inv in V1.
-  apply Rabs_le_inv in V2. apply Rabs_le_inv in X0'. apply Rabs_le_inv in X1'. apply Rabs_le_inv in X2'. apply Rabs_le_inv in Y0'.
+  apply Rabs_le_inv in A0. apply Rabs_le_inv in A1. apply Rabs_le_inv in A2. apply Rabs_le_inv in V0.
+  apply Rabs_le_inv in V1.
+  apply Rabs_le_inv in V2. apply Rabs_le_inv in X0'. apply Rabs_le_inv in X1'. apply Rabs_le_inv in X2'.
+  apply Rabs_le_inv in Y0'.
   apply Rabs_le_inv in Y1'. apply Rabs_le_inv in Y2'. apply Rabs_le_inv in L'.
   unfold size. clear - A0 A1 A2 V0 V1 V2 X0' X1' X2' Y0' Y1' Y2' L'. apply Rabs_le. lra.
 Qed.
 
 (* The bound, a sum of terms that are not negative, through at most 32 roundings. *)
-Theorem BOUND_FACTOR_holds : forall bound, (1 - 32 * u) * (BOUND_FACTOR * u * size) <= bound -> Rabs (D - (s + low)) <= bound.
+Theorem BOUND_FACTOR_holds : forall bound, (1 - 32 * u) * (BOUND_FACTOR * u * size) <= bound -> Rabs (D - (s + low))
+  <= bound.
 Proof.
   intros bound H. pose proof running as Q. assert (0 <= size) by (unfold size; pose proof u_pos; abs_pos;
     repeat apply Rplus_le_le_0_compat; try (apply Rmult_le_pos; [apply Rabs_pos | lra]); lra).
@@ -90,12 +98,15 @@ Proof.
   assert (Rho : Rabs rho <= 2 * u).
   { subst rho. replace (1 - r * s) with (- ((r - 1 / s) * s)) by (field; assumption). rewrite Rabs_Ropp, Rabs_mult.
     apply Rle_trans with ((u * Rabs (1 / s) + bp (-1075)) * Rabs s); [apply Rmult_le_compat_r; lra|].
-    assert (Rabs (1 / s) * Rabs s = 1) by (rewrite <- Rabs_mult; replace (1 / s * s) with 1 by (field; assumption); apply Rabs_R1).
+    assert (Rabs (1 / s) * Rabs s = 1) by (rewrite <- Rabs_mult; replace (1 / s * s) with 1 by (field; assumption);
+      apply Rabs_R1).
     assert (bp (-1075) * Rabs s <= u).
     { apply Rle_trans with (bp (-1075) * bp 400); [apply Rmult_le_compat_l; [apply Rlt_le, bp_pos | assumption]|].
       unfold u. rewrite <- bp_add. apply bp_le. lia. }
-    replace ((u * Rabs (1 / s) + bp (-1075)) * Rabs s) with (u * (Rabs (1 / s) * Rabs s) + bp (-1075) * Rabs s) by ring. rewrite H. lra. }
-  pose proof (RN_back (rho - RN (low * r))) as E1. pose proof (RN_back (low * r)) as E2. pose proof (RN_back (bound * Rabs r)) as E3.
+    replace ((u * Rabs (1 / s) + bp (-1075)) * Rabs s) with (u * (Rabs (1 / s) * Rabs s) + bp (-1075) * Rabs s) by
+      ring. rewrite H. lra. }
+  pose proof (RN_back (rho - RN (low * r))) as E1. pose proof (RN_back (low * r)) as E2.
+  pose proof (RN_back (bound * Rabs r)) as E3.
   set (tau := RN (rho - RN (low * r))) in *. set (lr := RN (low * r)) in *. set (eta := RN (bound * Rabs r)) in *.
   assert (T : bp (-1075) <= u) by (unfold u; apply bp_le; lia).
   assert (B0 : 0 <= bound) by (pose proof (Rabs_pos (0 - (s + low))); lra).

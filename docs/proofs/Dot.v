@@ -18,7 +18,8 @@ Proof. unfold ERROR_FLOOR. rewrite Rabs_pos_eq; [lra | apply Rlt_le, bp_pos]. Qe
 Lemma below : forall k, (k <= -1062)%Z -> bp k <= / 1000000000000 * ERROR_FLOOR.
 Proof.
   intros k H. apply Rle_trans with (bp (-1062)); [now apply bp_le|]. unfold ERROR_FLOOR.
-  replace (-1062)%Z with (-40 + -1022)%Z by reflexivity. rewrite bp_add. apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|].
+  replace (-1062)%Z with (-40 + -1022)%Z by reflexivity. rewrite bp_add.
+  apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|].
   simpl. lra.
 Qed.
 
@@ -45,7 +46,8 @@ Proof.
   assert (E : ERROR = 4 * u) by (rewrite u_val; unfold ERROR; simpl; lra).
   rewrite (Rabs_pos_eq ERROR) in W by (rewrite E; pose proof u_pos; lra).
   assert (0 < ERROR_FLOOR) by apply bp_pos. rewrite (Rabs_pos_eq ERROR_FLOOR) in W by lra. rewrite E in W.
-  repeat match goal with H : _ <= _ + bp ?k |- _ => pose proof (below k ltac:(lia)); generalize dependent (bp k); intros end.
+  repeat match goal with H : _ <= _ + bp ?k |- _ => pose proof (below k ltac:(lia)); generalize dependent (bp k);
+    intros end.
   apply Rabs_le_inv in W. rewrite u_val in *.
   lra.
 Qed.
@@ -66,7 +68,8 @@ Proof.
   assert (E : DIFFERENCE_ERROR = 8 * u) by (rewrite u_val; unfold DIFFERENCE_ERROR; simpl; lra).
   rewrite (Rabs_pos_eq DIFFERENCE_ERROR) in W by (rewrite E; pose proof u_pos; lra).
   assert (0 < ERROR_FLOOR) by apply bp_pos. rewrite (Rabs_pos_eq ERROR_FLOOR) in W by lra. rewrite E in W.
-  repeat match goal with H : _ <= _ + bp ?k |- _ => pose proof (below k ltac:(lia)); generalize dependent (bp k); intros end.
+  repeat match goal with H : _ <= _ + bp ?k |- _ => pose proof (below k ltac:(lia)); generalize dependent (bp k);
+    intros end.
   apply Rabs_le_inv in W. rewrite u_val in *. lra.
 Qed.
 

@@ -30,7 +30,8 @@ Proof.
   replace (h + l + - l) with h in T by ring. rewrite Rabs_Ropp in T. lra.
 Qed.
 (* fast_two_sum gives the form that the type promises. *)
-Lemma normal : forall v w, F v -> F w -> RN (v + w) + fast_two_sum_error v w = v + w -> dd (RN (v + w)) (fast_two_sum_error v w).
+Lemma normal : forall v w, F v -> F w -> RN (v + w) + fast_two_sum_error v w = v + w -> dd (RN (v + w))
+  (fast_two_sum_error v w).
 Proof. intros. repeat split; try apply RN_F. now rewrite H1. Qed.
 
 Lemma small_sum : forall v w, F v -> F w -> Rabs w <= Rabs v -> RN (v + w) + fast_two_sum_error v w = v + w.
@@ -58,7 +59,8 @@ Lemma s'_le : Rabs s' <= u * Rabs (xh + yh).
 Proof. rewrite s'_eq. apply two_sum_error_le. apply Fxh. apply Fyh. Qed.
 Lemma t'_le : Rabs t' <= u * Rabs (xl + yl) /\ Rabs t' <= u * Rabs t.
 Proof. rewrite t'_eq. apply two_sum_error_le. apply Fxl. apply Fyl. Qed.
-Definition good := v + v' = s + c /\ RN (v + w) + fast_two_sum_error v w = v + w /\ Rabs (v + w - z) <= SUM * (u * u) * Rabs z.
+Definition good := v + v' = s + c /\ RN (v + w) + fast_two_sum_error v w = v + w /\ Rabs (v + w - z) <= SUM * (u * u)
+  * Rabs z.
 
 Lemma add_far : Rabs xh <= 2 * Rabs (xh + yh) -> Rabs yh <= Rabs xh -> good.
 Proof.
@@ -77,7 +79,8 @@ Proof.
   assert (C0 : Rabs (s' + t) <= 4 * (u * S) + 3 * (u * u * S)) by (eapply Rle_trans; [apply Rabs_triang|]; lra).
   assert (C1 : Rabs (c - (s' + t)) <= 4 * (u * u * S) + 3 * (u * u * u * S)) by (pose proof u_pos; nra).
   assert (C2 : Rabs c <= (4 + / 1000) * (u * S)).
-  { replace c with ((c - (s' + t)) + (s' + t)) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
+  { replace c with ((c - (s' + t)) + (s' + t)) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *.
+  lra. }
   assert (V1 : (1 - u) * S <= Rabs s).
   { pose proof (Rabs_triang s (- (s - (xh + yh)))) as P. replace (s + - (s - (xh + yh))) with (xh + yh) in P by ring.
     rewrite Rabs_Ropp in P. fold S in P. lra. }
@@ -100,7 +103,8 @@ Proof.
   split; [exact G1|]. split.
   - apply fast_two_sum; try apply RN_F.
     assert (Rabs w <= 2 * (u * S)).
-    { replace w with ((w - (t' + v')) + (t' + v')) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
+    { replace w with ((w - (t' + v')) + (t' + v')) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    rewrite u_val in *. lra. }
     assert ((1 - 10 * u) * S <= Rabs v).
     { pose proof (Rabs_triang v (v' + - c)) as P1. replace (v + (v' + - c)) with s in P1 by lra.
       pose proof (Rabs_triang v' (- c)) as P2. rewrite Rabs_Ropp in P2. rewrite u_val in *. lra. }
@@ -128,7 +132,8 @@ Lemma add_near : 2 * Rabs (xh + yh) < Rabs xh -> Rabs yh <= Rabs xh -> good.
 Proof.
   intros H1 H2. pose proof Fxh as F1. pose proof Fyh as F2.
   assert (Y : Rabs xh / 2 < Rabs yh).
-  { pose proof (Rabs_triang (xh + yh) (- yh)) as P. replace (xh + yh + - yh) with xh in P by ring. rewrite Rabs_Ropp in P. lra. }
+  { pose proof (Rabs_triang (xh + yh) (- yh)) as P. replace (xh + yh + - yh) with xh in P by ring.
+  rewrite Rabs_Ropp in P. lra. }
   assert (X0 : xh <> 0) by (intro Z; rewrite Z, Rabs_R0 in H1; pose proof (Rabs_pos (0 + yh)); lra).
   assert (Y0 : yh <> 0) by (intro Z; rewrite Z, Rabs_R0 in Y; pose proof (Rabs_pos xh); lra).
   assert (S : s = xh + yh).
@@ -168,7 +173,8 @@ Proof.
     assert (CT : (cexp radix2 fexp t <= e)%Z \/ t = 0).
     { destruct (Req_dec t 0); [now right | left].
       assert (mag radix2 t <= e + 2)%Z.
-      { apply mag_le_bpow; [assumption|]. replace (e + 2)%Z with (1 + (1 + e))%Z by ring. rewrite bp_add, bp_1, bp_add, bp_1.
+      { apply mag_le_bpow; [assumption|]. replace (e + 2)%Z with (1 + (1 + e))%Z by ring.
+      rewrite bp_add, bp_1, bp_add, bp_1.
         pose proof (bp_pos e). lra. }
       unfold cexp, fexp, FLT_exp. lia. }
     assert (G1 : v + v' = s + c).
@@ -177,7 +183,8 @@ Proof.
       - destruct CT as [CT|CT]; [|contradiction].
         apply fast_two_sum_multiple with (k := (ks * 2 ^ (e - cexp radix2 fexp t))%Z); try apply RN_F; [assumption|].
         rewrite mult_IZR. replace (IZR (2 ^ (e - cexp radix2 fexp t))) with (bp (e - cexp radix2 fexp t)).
-        + rewrite Rmult_assoc, <- bp_add. replace (e - cexp radix2 fexp t + cexp radix2 fexp t)%Z with e by ring. exact Ks.
+        + rewrite Rmult_assoc, <- bp_add. replace (e - cexp radix2 fexp t + cexp radix2 fexp t)%Z with e by ring.
+        exact Ks.
         + rewrite <- (IZR_Zpower radix2); [reflexivity | lia]. }
     destruct (Rle_or_lt (Rabs t) (Rabs (s + t))) as [L|L].
     + (* no cancellation *)
@@ -195,7 +202,8 @@ Proof.
       split; [rewrite C; exact G1|]. split.
       * apply fast_two_sum; try apply RN_F.
         assert (Rabs w <= 3 * (u * m)).
-        { replace w with ((w - (t' + v')) + (t' + v')) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
+        { replace w with ((w - (t' + v')) + (t' + v')) by ring. eapply Rle_trans; [apply Rabs_triang|].
+        rewrite u_val in *. lra. }
         assert ((1 - u) * m <= Rabs v).
         { pose proof (Rabs_triang v v') as P. rewrite G1 in P. fold m in P. lra. }
         rewrite u_val in *. lra.
@@ -220,7 +228,8 @@ Proof.
            set (et := cexp radix2 fexp t) in *.
            assert (KV : s + t = IZR (ks * 2 ^ (e - et) + kt) * bp et).
            { rewrite plus_IZR, mult_IZR, Rmult_plus_distr_r. replace (IZR (2 ^ (e - et))) with (bp (e - et)).
-             - rewrite Rmult_assoc, <- bp_add. replace (e - et + et)%Z with e by ring. rewrite <- Ks, <- Kt. reflexivity.
+             - rewrite Rmult_assoc, <- bp_add. replace (e - et + et)%Z with e by ring. rewrite <- Ks, <- Kt.
+             reflexivity.
              - rewrite <- (IZR_Zpower radix2); [reflexivity | lia]. }
            rewrite V in V0. rewrite KV in *. pose proof (multiple_least _ _ V0). pose proof (bp_pos et). lra.
       * replace (v + w - z) with 0 by (rewrite V, W; unfold z, t'; lra). rewrite Rabs_R0. unfold SUM.
@@ -273,7 +282,8 @@ Proof.
   assert (A3 : Rabs (xl * yl) <= u * u * P).
   { rewrite Rabs_mult, PE. replace (u * u * (Rabs xh * Rabs yh)) with ((u * Rabs xh) * (u * Rabs yh)) by ring.
     apply Rmult_le_compat; assumption. }
-  pose proof (RN_err (xh * yl)) as E1. pose proof (RN_err (xl * yh)) as E2. pose proof (RN_err (xh * yh)) as E0. fold P in E0.
+  pose proof (RN_err (xh * yl)) as E1. pose proof (RN_err (xl * yh)) as E2. pose proof (RN_err (xh * yh)) as E0.
+  fold P in E0.
   fold p in E0, He. set (c1 := RN (xh * yl)) in *. set (c2 := RN (xl * yh)) in *.
   pose proof (RN_sum c1 c2 (RN_F _) (RN_F _)) as E3. set (c := RN (c1 + c2)) in *.
   pose proof (RN_sum e c Fe (RN_F _)) as E4. change (RN (e + c)) with w in E4.
@@ -288,7 +298,8 @@ Proof.
     eapply Rle_trans; [apply Rplus_le_compat_r, Rplus_le_compat_r, Rabs_triang|]. rewrite u_val in *. lra. }
   assert (B4 : Rabs (c - (c1 + c2)) <= (2 + / 2000) * (u * u * P) + T) by (rewrite u_val in *; lra).
   assert (B5 : Rabs e <= u * P + 10 * T).
-  { replace e with ((p + e - xh * yh) - (p - xh * yh)) by ring. unfold Rminus at 1. eapply Rle_trans; [apply Rabs_triang|].
+  { replace e with ((p + e - xh * yh) - (p - xh * yh)) by ring. unfold Rminus at 1.
+  eapply Rle_trans; [apply Rabs_triang|].
     rewrite Rabs_Ropp. lra. }
   assert (B6 : Rabs (e + c) <= (3 + / 1500) * (u * P) + 13 * T).
   { replace (e + c) with (e + (c - (c1 + c2)) + (c1 + c2)) by ring. eapply Rle_trans; [apply Rabs_triang|].
@@ -298,7 +309,8 @@ Proof.
   - replace (p + w - (xh + xl) * (yh + yl)) with ((w - (e + c)) + (c - (c1 + c2)) + (c1 - xh * yl) + (c2 - xl * yh)
       + (p + e - xh * yh) - xl * yl) by ring.
     apply Rabs_le_inv in B7. apply Rabs_le_inv in B4. apply Rabs_le_inv in B1. apply Rabs_le_inv in B2.
-    apply Rabs_le_inv in He. apply Rabs_le_inv in A3. clear - B7 B4 B1 B2 He A3 P0 H4. apply Rabs_le. rewrite u_val in *. lra.
+    apply Rabs_le_inv in He. apply Rabs_le_inv in A3. clear - B7 B4 B1 B2 He A3 P0 H4. apply Rabs_le.
+    rewrite u_val in *. lra.
   - replace w with ((w - (e + c)) + (e + c)) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra.
   - lra.
 Qed.
@@ -313,7 +325,8 @@ Proof.
   - apply fast_two_sum; auto. pose proof (Rabs_triang p (- (p - xh * yh))) as P1.
     replace (p + - (p - xh * yh)) with (xh * yh) in P1 by ring. rewrite Rabs_Ropp in P1. fold P in P1.
     assert (bp (-1074) <= / 4000000000000000 * bp (-1022)).
-    { change (-1074)%Z with (-52 + -1022)%Z. rewrite bp_add. apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. simpl. lra. }
+    { change (-1074)%Z with (-52 + -1022)%Z. rewrite bp_add. apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. simpl.
+    lra. }
     pose proof (bp_pos (-1022)). rewrite u_val in *. lra.
   - assert (C : cexp radix2 fexp w = (-1074)%Z).
     { assert (mag radix2 w <= -1022)%Z by (apply mag_le_bpow; assumption). unfold cexp, fexp, FLT_exp. lia. }
@@ -331,7 +344,8 @@ Proof.
   pose proof (dd_value _ _ Hx) as [Vx _]. pose proof (dd_value _ _ Hy) as [Vy _].
   assert (V : (1 - 2 * u) * P <= Rabs ((xh + xl) * (yh + yl))).
   { rewrite Rabs_mult. apply Rle_trans with ((1 - u) * Rabs xh * ((1 - u) * Rabs yh)).
-    - replace ((1 - u) * Rabs xh * ((1 - u) * Rabs yh)) with ((1 - 2 * u + u * u) * P) by (unfold P; rewrite Rabs_mult; ring).
+    - replace ((1 - u) * Rabs xh * ((1 - u) * Rabs yh)) with ((1 - 2 * u + u * u) * P) by (unfold P;
+      rewrite Rabs_mult; ring).
       apply Rmult_le_compat_r; [apply Rabs_pos | rewrite u_val; lra].
     - apply Rmult_le_compat; auto; (apply Rmult_le_pos; [rewrite u_val; lra | apply Rabs_pos]). }
   assert (bp (-1070) = 16 * bp (-1074)) by (change (-1070)%Z with (4 + -1074)%Z; rewrite bp_add; simpl (bp 4); lra).
@@ -341,7 +355,8 @@ Qed.
 (* From 2^-900 on, and for zero, the relative error alone. *)
 Theorem PRODUCT_holds : Rabs (xh * yh) = 0 \/ bp (-900) <= Rabs (xh * yh) ->
   (xh * yh = 0 -> e = 0) ->
-  Rabs (RN (p + w) + fast_two_sum_error p w - (xh + xl) * (yh + yl)) <= PRODUCT * (u * u) * Rabs ((xh + xl) * (yh + yl)).
+  Rabs (RN (p + w) + fast_two_sum_error p w - (xh + xl) * (yh + yl)) <= PRODUCT * (u * u) * Rabs ((xh + xl) * (yh +
+    yl)).
 Proof.
   intros [Z|L] HZ.
   - assert (Z' : xh * yh = 0) by (rewrite <- Rabs_R0 in Z; revert Z; unfold Rabs; repeat destruct Rcase_abs; lra).
@@ -353,20 +368,24 @@ Proof.
     { unfold w, product_low. destruct (Rmult_integral _ _ Z') as [X|Y].
       - rewrite HZ, X, (L0 _ _ Lx X), !Rmult_0_l, RN_0, !Rplus_0_l, RN_0, RN_0. split; ring.
       - rewrite HZ, Y, (L0 _ _ Ly Y), !Rmult_0_r, RN_0, !Rplus_0_l, RN_0, RN_0. split; ring. }
-    destruct W0 as [W0 W1]. rewrite W0, W1. unfold p. rewrite Z', RN_0. replace (0 + 0 - 0) with 0 by ring. rewrite Rabs_R0. lra.
+    destruct W0 as [W0 W1]. rewrite W0, W1. unfold p. rewrite Z', RN_0. replace (0 + 0 - 0) with 0 by ring.
+    rewrite Rabs_R0. lra.
   - rewrite product_normal. destruct product_error as (E & _ & _). fold p w in E. eapply Rle_trans; [exact E|].
     fold P in L. pose proof (dd_value _ _ Hx) as [Vx _]. pose proof (dd_value _ _ Hy) as [Vy _].
     assert (V : (1 - 2 * u) * P <= Rabs ((xh + xl) * (yh + yl))).
     { rewrite Rabs_mult. apply Rle_trans with ((1 - u) * Rabs xh * ((1 - u) * Rabs yh)).
-      - replace ((1 - u) * Rabs xh * ((1 - u) * Rabs yh)) with ((1 - 2 * u + u * u) * P) by (unfold P; rewrite Rabs_mult; ring).
+      - replace ((1 - u) * Rabs xh * ((1 - u) * Rabs yh)) with ((1 - 2 * u + u * u) * P) by (unfold P;
+        rewrite Rabs_mult; ring).
         apply Rmult_le_compat_r; [apply Rabs_pos | rewrite u_val; lra].
       - apply Rmult_le_compat; auto; (apply Rmult_le_pos; [rewrite u_val; lra | apply Rabs_pos]). }
     assert (T : bp (-1074) <= / 1000 * (u * u) * P).
     { apply Rle_trans with (u * u * bp (-960)); [unfold u; rewrite <- !bp_add; apply bp_le; lia|].
-      replace (/ 1000 * (u * u) * P) with (u * u * (/ 1000 * P)) by ring. apply Rmult_le_compat_l; [rewrite u_val; lra|].
+      replace (/ 1000 * (u * u) * P) with (u * u * (/ 1000 * P)) by ring.
+      apply Rmult_le_compat_l; [rewrite u_val; lra|].
       apply Rle_trans with (/ 1000 * bp (-900)); [|lra]. change (-960)%Z with (-60 + -900)%Z. rewrite bp_add.
       apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. simpl. lra. }
-    assert (0 <= P) by apply Rabs_pos. set (V' := Rabs ((xh + xl) * (yh + yl))) in *. clearbody V' P. unfold PRODUCT. rewrite u_val in *. lra.
+    assert (0 <= P) by apply Rabs_pos. set (V' := Rabs ((xh + xl) * (yh + yl))) in *. clearbody V' P. unfold PRODUCT.
+    rewrite u_val in *. lra.
 Qed.
 End Product.
 
@@ -383,7 +402,8 @@ Let rest := RN (RN (RN (xh - p) - e) + RN (xl - RN (q * yl))).
 Let k := RN (rest / yh).
 
 Theorem QUOTIENT_holds : dd (RN (q + k)) (fast_two_sum_error q k) /\
-  Rabs (RN (q + k) + fast_two_sum_error q k - (xh + xl) / (yh + yl)) <= QUOTIENT * (u * u) * Rabs ((xh + xl) / (yh + yl)).
+  Rabs (RN (q + k) + fast_two_sum_error q k - (xh + xl) / (yh + yl)) <= QUOTIENT * (u * u) * Rabs ((xh + xl) / (yh +
+    yl)).
 Proof.
   pose proof (dd_low _ _ Hx) as Mx. pose proof (dd_low _ _ Hy) as My.
   destruct Hx as (Fxh & Fxl & _). destruct Hy as (Fyh & Fyl & _).
@@ -411,14 +431,16 @@ Proof.
   assert (Pp : Rabs (p - q * yh) <= (u + 2 * (u * u)) * Rabs xh).
   { eapply Rle_trans; [apply RN_err|].
     assert (Rabs (q * yh) <= (1 + u) * Rabs xh).
-    { rewrite Rabs_mult, AX. fold Y. replace ((1 + u) * (Z * Y)) with ((1 + u) * Z * Y) by ring. apply Rmult_le_compat_r; lra. }
+    { rewrite Rabs_mult, AX. fold Y. replace ((1 + u) * (Z * Y)) with ((1 + u) * Z * Y) by ring.
+    apply Rmult_le_compat_r; lra. }
     rewrite u_val in *. lra. }
   assert (X0 : 0 < Rabs xh) by lra.
   assert (Fp : F (xh - p)).
   { unfold Rminus. apply (generic_format_plus_weak radix2 fexp); [assumption | apply F_opp, RN_F|].
     change (xh + - p) with (xh - p). rewrite Rabs_Ropp.
     assert (S : Rabs (xh - p) <= 3 * u * Rabs xh).
-    { replace (xh - p) with ((xh - q * yh) - (p - q * yh)) by ring. unfold Rminus at 1. eapply Rle_trans; [apply Rabs_triang|].
+    { replace (xh - p) with ((xh - q * yh) - (p - q * yh)) by ring. unfold Rminus at 1.
+    eapply Rle_trans; [apply Rabs_triang|].
       rewrite Rabs_Ropp. rewrite u_val in *. lra. }
     apply Rmin_glb; [rewrite u_val in *; lra|].
     pose proof (Rabs_triang p (xh - p)) as P. replace (p + (xh - p)) with xh in P by ring. rewrite u_val in *. lra. }
@@ -459,7 +481,8 @@ Proof.
   assert (C2 : Rabs (R0 / yh) <= (3 + / 1000) * u * Z) by (apply DY; lra).
   assert (Z0 : 0 < Z) by lra.
   assert (C3 : Rabs (rest / yh) <= (3 + / 500) * u * Z).
-  { replace (rest / yh) with ((rest / yh - R0 / yh) + R0 / yh) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
+  { replace (rest / yh) with ((rest / yh - R0 / yh) + R0 / yh) by ring. eapply Rle_trans; [apply Rabs_triang|].
+  rewrite u_val in *. lra. }
   assert (C4 : Rabs (k - rest / yh) <= (3 + / 400) * (u * u) * Z).
   { pose proof (RN_err (rest / yh)) as P. fold k in P. rewrite u_val in *. lra. }
   assert (YY : yh + yl <> 0).
@@ -481,8 +504,10 @@ Proof.
   assert (N : RN (q + k) + fast_two_sum_error q k = q + k).
   { apply fast_two_sum; try apply RN_F.
     assert (Rabs k <= 4 * u * Z).
-    { replace k with ((k - rest / yh) + rest / yh) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
-    pose proof (Rabs_triang q (- (q - Q))) as P. replace (q + - (q - Q)) with Q in P by ring. rewrite Rabs_Ropp in P. fold Z in P.
+    { replace k with ((k - rest / yh) + rest / yh) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    rewrite u_val in *. lra. }
+    pose proof (Rabs_triang q (- (q - Q))) as P. replace (q + - (q - Q)) with Q in P by ring. rewrite Rabs_Ropp in P.
+    fold Z in P.
     rewrite u_val in *. lra. }
   split; [apply normal; auto; apply RN_F|]. rewrite N, V.
   apply Rabs_le_inv in C1. apply Rabs_le_inv in C4. apply Rabs_le_inv in C5.
@@ -519,7 +544,8 @@ Proof.
   { unfold S. apply below_root; [apply sqrt_pos|]. rewrite sqrt_sqrt by lra. rewrite bp_sq. exact Lx. }
   pose proof (bp_pos (-400)).
   assert (Er : Rabs (r - S) <= u * S).
-  { pose proof (RN_normal S) as P. rewrite (Rabs_pos_eq S) in P by lra. apply P. eapply Rle_trans; [|exact S0]. apply bp_le. lia. }
+  { pose proof (RN_normal S) as P. rewrite (Rabs_pos_eq S) in P by lra. apply P. eapply Rle_trans; [|exact S0].
+  apply bp_le. lia. }
   apply Rabs_le_inv in Er. assert (R0 : 0 < r) by (rewrite u_val in *; lra).
   assert (D0 : Rabs (xh - r * r) <= (2 + 2 * u) * u * xh).
   { rewrite <- SS. replace (S * S - r * r) with ((S - r) * (S + r)) by ring. rewrite Rabs_mult.
@@ -540,16 +566,19 @@ Proof.
   { unfold Rminus. apply (generic_format_plus_weak radix2 fexp); [assumption | apply F_opp, RN_F|].
     change (xh + - p) with (xh - p). rewrite Rabs_Ropp.
     assert (Q : Rabs (xh - p) <= 4 * u * xh).
-    { replace (xh - p) with ((xh - r * r) - (p - r * r)) by ring. unfold Rminus at 1. eapply Rle_trans; [apply Rabs_triang|].
+    { replace (xh - p) with ((xh - r * r) - (p - r * r)) by ring. unfold Rminus at 1.
+    eapply Rle_trans; [apply Rabs_triang|].
       rewrite Rabs_Ropp. rewrite u_val in *. lra. }
     rewrite (Rabs_pos_eq xh) by lra. apply Rmin_glb; [rewrite u_val in *; lra|].
-    pose proof (Rabs_triang p (xh - p)) as P. replace (p + (xh - p)) with xh in P by ring. rewrite (Rabs_pos_eq xh) in P by lra.
+    pose proof (Rabs_triang p (xh - p)) as P. replace (p + (xh - p)) with xh in P by ring.
+    rewrite (Rabs_pos_eq xh) in P by lra.
     rewrite u_val in *. lra. }
   set (d := RN (RN (xh - p) - e)) in *.
   assert (E1 : Rabs (d - (xh - r * r)) <= (2 + 2 * u) * (u * u * xh)).
   { unfold d. rewrite (RN_id _ Fp). replace (xh - r * r) with (xh - p - e) by lra.
     eapply Rle_trans; [apply RN_diff; assumption|].
-    replace (xh - p - e) with (xh - r * r) by lra. replace ((2 + 2 * u) * (u * u * xh)) with (u * ((2 + 2 * u) * u * xh)) by ring.
+    replace (xh - p - e) with (xh - r * r) by lra. replace ((2 + 2 * u) * (u * u * xh)) with (u * ((2 + 2 * u) * u *
+      xh)) by ring.
     apply Rmult_le_compat_l; lra. }
   pose proof (RN_sum d xl (RN_F _) Fxl) as E2. change (RN (d + xl)) with rest in E2.
   assert (B1 : Rabs (d + xl) <= (3 + / 1000) * (u * xh)).
@@ -558,24 +587,30 @@ Proof.
   assert (B2 : Rabs (rest - (d + xl)) <= (3 + / 1000) * (u * u * xh)) by (rewrite u_val in *; lra).
   set (M := xh + xl - r * r).
   assert (B3 : Rabs (rest - M) <= (5 + / 500) * (u * u * xh)).
-  { apply Rabs_le_inv in E1. apply Rabs_le_inv in B2. clear - E1 B2 X0. unfold M. apply Rabs_le. rewrite u_val in *. lra. }
+  { apply Rabs_le_inv in E1. apply Rabs_le_inv in B2. clear - E1 B2 X0. unfold M. apply Rabs_le. rewrite u_val in *.
+  lra. }
   assert (B4 : Rabs M <= (3 + / 1000) * (u * xh)).
-  { apply Rabs_le_inv in D0. apply Rabs_le_inv in Mx. clear - D0 Mx X0. unfold M. apply Rabs_le. rewrite u_val in *. lra. }
+  { apply Rabs_le_inv in D0. apply Rabs_le_inv in Mx. clear - D0 Mx X0. unfold M. apply Rabs_le. rewrite u_val in *.
+  lra. }
   assert (F2 : RN (2 * r) = 2 * r).
-  { apply RN_id. replace (2 * r) with (r * bp 1) by (rewrite bp_1; ring). apply mult_bpow_pos_exact_FLT; [apply RN_F | lia]. }
+  { apply RN_id. replace (2 * r) with (r * bp 1) by (rewrite bp_1; ring).
+  apply mult_bpow_pos_exact_FLT; [apply RN_F | lia]. }
   (* a / 2r, where a is a part of xh *)
   assert (DR : forall a b, 0 <= b -> Rabs a <= b * xh -> Rabs (a / (2 * r)) <= (1 + 2 * u) / 2 * b * S).
   { intros a b B0 Hab. unfold Rdiv at 1. rewrite Rabs_mult, Rabs_inv, (Rabs_pos_eq (2 * r)) by lra.
-    apply Rmult_le_reg_r with (2 * r); [lra|]. rewrite Rmult_assoc, Rinv_l by lra. rewrite Rmult_1_r. eapply Rle_trans; [exact Hab|].
+    apply Rmult_le_reg_r with (2 * r); [lra|]. rewrite Rmult_assoc, Rinv_l by lra. rewrite Rmult_1_r.
+    eapply Rle_trans; [exact Hab|].
     rewrite <- SS. replace ((1 + 2 * u) / 2 * b * S * (2 * r)) with ((b * S) * ((1 + 2 * u) * r)) by field.
-    replace (b * (S * S)) with ((b * S) * S) by ring. apply Rmult_le_compat_l; [apply Rmult_le_pos; lra|]. rewrite u_val in *. lra. }
+    replace (b * (S * S)) with ((b * S) * S) by ring. apply Rmult_le_compat_l; [apply Rmult_le_pos; lra|].
+    rewrite u_val in *. lra. }
   assert (C1 : Rabs (rest / (2 * r) - M / (2 * r)) <= (25 / 10 + / 500) * (u * u * S)).
   { replace (rest / (2 * r) - M / (2 * r)) with ((rest - M) / (2 * r)) by (field; lra).
     eapply Rle_trans; [apply (DR _ ((5 + / 500) * (u * u))); [rewrite u_val|]; lra|]. rewrite u_val in *. lra. }
   assert (C2 : Rabs (M / (2 * r)) <= (15 / 10 + / 1000) * (u * S)).
   { eapply Rle_trans; [apply (DR _ ((3 + / 1000) * u)); [rewrite u_val|]; lra|]. rewrite u_val in *. lra. }
   assert (C3 : Rabs (rest / (2 * r)) <= (15 / 10 + / 500) * (u * S)).
-  { replace (rest / (2 * r)) with ((rest / (2 * r) - M / (2 * r)) + M / (2 * r)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+  { replace (rest / (2 * r)) with ((rest / (2 * r) - M / (2 * r)) + M / (2 * r)) by ring.
+  eapply Rle_trans; [apply Rabs_triang|].
     rewrite u_val in *. lra. }
   assert (C4 : Rabs (k - rest / (2 * r)) <= (15 / 10 + / 400) * (u * u * S)).
   { unfold k. rewrite F2. pose proof (RN_err (rest / (2 * r))) as P. rewrite u_val in *. lra. }
@@ -585,8 +620,10 @@ Proof.
   assert (WW : W * W = xh + xl) by (apply sqrt_sqrt; assumption). assert (W0 : 0 <= W) by apply sqrt_pos.
   assert (WS : (1 - u) * S <= W <= (1 + u) * S).
   { split; apply below_root; try lra; try (apply Rmult_le_pos; rewrite ?u_val; lra).
-    - replace ((1 - u) * S * ((1 - u) * S)) with ((1 - u) * (1 - u) * (S * S)) by ring. rewrite SS, WW. rewrite u_val in *. lra.
-    - replace ((1 + u) * S * ((1 + u) * S)) with ((1 + u) * (1 + u) * (S * S)) by ring. rewrite SS, WW. rewrite u_val in *. lra. }
+    - replace ((1 - u) * S * ((1 - u) * S)) with ((1 - u) * (1 - u) * (S * S)) by ring. rewrite SS, WW.
+    rewrite u_val in *. lra.
+    - replace ((1 + u) * S * ((1 + u) * S)) with ((1 + u) * (1 + u) * (S * S)) by ring. rewrite SS, WW.
+    rewrite u_val in *. lra. }
   assert (ID : W - r = M / (2 * r) - (W - r) * (W - r) / (2 * r)) by (unfold M; rewrite <- WW; field; lra).
   assert (WR : Rabs (W - r) <= (15 / 10 + / 100) * (u * S)).
   { assert (G : Rabs (W - r) <= 2 * (u * S)) by (apply Rabs_le; lra).
@@ -595,17 +632,21 @@ Proof.
       { rewrite Rabs_mult, <- SS. replace (4 * (u * u) * (S * S)) with ((2 * (u * S)) * (2 * (u * S))) by ring.
         apply Rmult_le_compat; auto using Rabs_pos. }
       eapply Rle_trans; [apply (DR _ (4 * (u * u))); [rewrite u_val; lra | assumption]|]. rewrite u_val in *. lra. }
-    rewrite ID. unfold Rminus at 1. eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_Ropp. rewrite u_val in *. lra. }
+    rewrite ID. unfold Rminus at 1. eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_Ropp. rewrite u_val in *.
+    lra. }
   assert (C5 : Rabs ((W - r) * (W - r) / (2 * r)) <= (12 / 10) * (u * u * S)).
   { assert (Rabs ((W - r) * (W - r)) <= ((15 / 10 + / 100) * (15 / 10 + / 100) * (u * u)) * xh).
     { rewrite Rabs_mult, <- SS.
-      replace ((15 / 10 + / 100) * (15 / 10 + / 100) * (u * u) * (S * S)) with (((15 / 10 + / 100) * (u * S)) * ((15 / 10 + / 100) * (u * S))) by ring.
+      replace ((15 / 10 + / 100) * (15 / 10 + / 100) * (u * u) * (S * S)) with (((15 / 10 + / 100) * (u * S)) * ((15 /
+        10 + / 100) * (u * S))) by ring.
       apply Rmult_le_compat; auto using Rabs_pos. }
-    eapply Rle_trans; [apply (DR _ ((15 / 10 + / 100) * (15 / 10 + / 100) * (u * u))); [rewrite u_val; lra | assumption]|].
+    eapply Rle_trans; [apply (DR _ ((15 / 10 + / 100) * (15 / 10 + / 100) * (u * u))); [rewrite u_val;
+      lra | assumption]|].
     rewrite u_val in *. lra. }
   assert (N : RN (r + k) + fast_two_sum_error r k = r + k).
   { apply fast_two_sum; try apply RN_F. rewrite (Rabs_pos_eq r) by lra.
-    replace k with ((k - rest / (2 * r)) + rest / (2 * r)) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
+    replace k with ((k - rest / (2 * r)) + rest / (2 * r)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    rewrite u_val in *. lra. }
   split; [apply normal; auto; apply RN_F|]. rewrite N.
   replace (r + k - W) with ((k - rest / (2 * r)) + (rest / (2 * r) - M / (2 * r)) + ((M / (2 * r)) - (W - r))) by ring.
   replace (M / (2 * r) - (W - r)) with ((W - r) * (W - r) / (2 * r)) by lra.

@@ -65,14 +65,16 @@ Proof.
   set (e := cexp radix2 fexp b) in *.
   assert (Ee : (-1074 <= e)%Z) by (unfold e, cexp, fexp, FLT_exp; lia).
   assert (Be : Rabs b < bp (53 + e)).
-  { apply Rlt_le_trans with (bp (mag radix2 b)); [apply bpow_mag_gt | apply bp_le]. unfold e, cexp, fexp, FLT_exp. lia. }
+  { apply Rlt_le_trans with (bp (mag radix2 b)); [apply bpow_mag_gt | apply bp_le]. unfold e, cexp, fexp, FLT_exp.
+  lia. }
   unfold F, generic_format in Fb. fold e in Fb. set (m := Ztrunc (scaled_mantissa radix2 fexp b)) in Fb.
   assert (Kb : b = IZR m * bp e) by exact Fb.
   assert (Sum : a + b = IZR (k + m) * bp e) by (rewrite plus_IZR; lra).
   (* the error is a multiple of 2^e of at most 2^e *)
   assert (D : exists n, RN (a + b) - (a + b) = IZR n * bp e /\ (Z.abs n <= 1)%Z).
   { destruct (Rle_or_lt (Rabs (a + b)) (bp (53 + e))) as [S|S].
-    - exists 0%Z. rewrite RN_id; [split; [simpl; ring | simpl; lia]|]. rewrite Sum. apply multiple_F; [assumption | now rewrite <- Sum].
+    - exists 0%Z. rewrite RN_id; [split; [simpl; ring | simpl; lia]|]. rewrite Sum.
+    apply multiple_F; [assumption | now rewrite <- Sum].
     - assert (M : mag radix2 (a + b) = (54 + e)%Z :> Z).
       { apply mag_unique. split.
         - replace (54 + e - 1)%Z with (53 + e)%Z by ring. lra.
@@ -98,13 +100,16 @@ Proof.
   assert (V : RN (a + b) - a = IZR (m + n) * bp e) by (rewrite plus_IZR; lra).
   assert (Fz : F (RN (a + b) - a)).
   { rewrite V. apply multiple_F; [assumption|]. rewrite Rabs_mult, (Rabs_pos_eq (bp e)), bp_add by apply Rlt_le, bp_pos.
-    apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. rewrite Kb, Rabs_mult, (Rabs_pos_eq (bp e)), bp_add in Be by apply Rlt_le, bp_pos.
-    apply Rmult_lt_reg_r in Be; [|apply bp_pos]. rewrite <- abs_IZR in *. replace (bp 53) with (IZR (2 ^ 53)) in * by (simpl; lra).
+    apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. rewrite Kb, Rabs_mult, (Rabs_pos_eq (bp e)), bp_add in Be by
+      apply Rlt_le, bp_pos.
+    apply Rmult_lt_reg_r in Be; [|apply bp_pos]. rewrite <- abs_IZR in *.
+    replace (bp 53) with (IZR (2 ^ 53)) in * by (simpl; lra).
     apply lt_IZR in Be. apply IZR_le. lia. }
   unfold fast_two_sum_error. rewrite (RN_id _ Fz). rewrite (RN_id (b - (RN (a + b) - a))); [ring|].
   replace (b - (RN (a + b) - a)) with (IZR (- n) * bp e) by (rewrite opp_IZR; lra).
   apply multiple_F; [assumption|]. rewrite Rabs_mult, (Rabs_pos_eq (bp e)), bp_add by apply Rlt_le, bp_pos.
-  apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. rewrite <- abs_IZR. replace (bp 53) with (IZR (2 ^ 53)) by (simpl; lra).
+  apply Rmult_le_compat_r; [apply Rlt_le, bp_pos|]. rewrite <- abs_IZR.
+  replace (bp 53) with (IZR (2 ^ 53)) by (simpl; lra).
   apply IZR_le. lia.
 Qed.
 
@@ -113,7 +118,8 @@ Definition fused_error a b := RN (a * b - RN (a * b)).
 Definition high a := let s := RN (a * (bp 27 + 1)) in RN (s - RN (s - a)).
 Definition split_error a b :=
   let a_high := high a in let a_low := RN (a - a_high) in let b_high := high b in let b_low := RN (b - b_high) in
-  RN (RN (RN (RN (RN (a_high * b_high) - RN (a * b)) + RN (a_high * b_low)) + RN (a_low * b_high)) + RN (a_low * b_low)).
+  RN (RN (RN (RN (RN (a_high * b_high) - RN (a * b)) + RN (a_high * b_low)) + RN (a_low * b_high)) + RN (a_low *
+    b_low)).
 
 (* From here on a product has its error as a double. *)
 Definition LEAST_PRODUCT := bp (-968).
@@ -135,20 +141,23 @@ Proof.
       apply Rmult_le_compat_l; [apply Rlt_le, u_pos | lra]. }
     assert (u * (u * bp (-969)) <= bp (-1074)) by (unfold u; rewrite <- !bp_add; apply bp_le; lia).
     assert (bp (-1075) <= bp (-1074)) by (apply bp_le; lia). pose proof (bp_pos (-1075)).
-    assert (u * Rabs d <= u * (u * bp (-969) + bp (-1075))) by (apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]).
+    assert (u * Rabs d <= u * (u * bp (-969) + bp (-1075))) by (apply Rmult_le_compat_l;
+      [apply Rlt_le, u_pos | assumption]).
     assert (u * bp (-1075) <= 1 * bp (-1075)) by (apply Rmult_le_compat_r; [lra | rewrite u_val; lra]). lra.
 Qed.
 Lemma split : forall a b, F a -> F b ->
   (a * b = 0 \/ bp (-969) <= Rabs (a * b) -> RN (a * b) + split_error a b = a * b) /\
   Rabs (RN (a * b) + split_error a b - a * b) <= 4 * bp (-1074).
 Proof.
-  intros a b Fa Fb. pose proof (Dekker radix2 (-1074) 53 even ltac:(lia) ltac:(lia) a b Fa Fb ltac:(left; reflexivity)) as [D1 D2].
+  intros a b Fa Fb. pose proof (Dekker radix2 (-1074) 53 even ltac:(lia) ltac:(lia) a b Fa Fb ltac:(left;
+    reflexivity)) as [D1 D2].
   assert (H : forall x, RN (RN (x - RN (x * (bp 27 + 1))) + RN (x * (bp 27 + 1))) = high x).
   { intro x. unfold high. f_equal. replace (x - RN (x * (bp 27 + 1))) with (- (RN (x * (bp 27 + 1)) - x)) by ring.
     rewrite RN_opp. ring. }
   change (round radix2 (FLT_exp (-1074) 53) (Znearest even)) with RN in *.
   change (53 - Z.div2 53)%Z with 27%Z in *. rewrite !H in D1, D2.
-  assert (E : RN (RN (RN (RN (- RN (a * b) + RN (high a * high b)) + RN (high a * RN (b - high b))) + RN (RN (a - high a) * high b))
+  assert (E : RN (RN (RN (RN (- RN (a * b) + RN (high a * high b)) + RN (high a * RN (b - high b))) + RN (RN (a - high
+    a) * high b))
     + RN (RN (a - high a) * RN (b - high b))) = split_error a b).
   { unfold split_error. do 7 f_equal. ring. }
   rewrite E in D1, D2. split.

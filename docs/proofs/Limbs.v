@@ -143,7 +143,8 @@ Definition determinant := dot3 a cofactor.
 Definition column := Plus (cross2 cofactor a) (cross2 cofactor a).
 Definition sum_of_squares x := Plus (Plus (dot3 x x) (dot3 x x)) (dot3 x x).
 Definition row x := Plus (Plus x x) x.
-Definition inverse := Z.max (Z.max (quotient (row cofactor) determinant) (quotient (row column) (sum_of_squares cofactor)))
+Definition inverse := Z.max (Z.max (quotient (row cofactor) determinant) (quotient (row column) (sum_of_squares
+  cofactor)))
   (quotient (row a) (sum_of_squares a)).
 End Inverse.
 Theorem INVERSE_LIMBS_holds : inverse double <= INVERSE_LIMBS.
@@ -151,7 +152,8 @@ Proof. vm_compute. discriminate. Qed.
 (* exponents that differ by at most INVERSE_NARROW, and 53 bits *)
 Theorem INVERSE_NARROW_holds : inverse (spanned (INVERSE_NARROW + 53)) <= INVERSE_NARROW_LIMBS.
 Proof. vm_compute. discriminate. Qed.
-Theorem INVERSE_NARROW_LIMBS_holds : bits (sum_of_squares (cofactor (spanned (INVERSE_NARROW + 53)))) <= 64 * (INVERSE_NARROW_LIMBS - 2).
+Theorem INVERSE_NARROW_LIMBS_holds : bits (sum_of_squares (cofactor (spanned (INVERSE_NARROW + 53)))) <= 64 *
+  (INVERSE_NARROW_LIMBS - 2).
 Proof. vm_compute. discriminate. Qed.
 (* Whole numbers of 11 bits: all numerators and denominators are whole numbers of at most 53 bits, so exact doubles. *)
 Theorem WHOLE_BITS_holds : let a := spanned WHOLE_BITS in
@@ -221,7 +223,8 @@ Proof. vm_compute. discriminate. Qed.
 Definition middle := Plus (Times difference sphere_a) (Times sphere_b double).
 Theorem SURFACE_LIMBS_holds :
   root middle (Times sphere_delta (Times double double)) (Times twice_midpoint sphere_a) <= SURFACE_LIMBS /\
-  quotient (Plus (Times difference (triangle_volume difference double)) (Times (triangle_volume difference difference) double))
+  quotient (Plus (Times difference (triangle_volume difference double)) (Times (triangle_volume difference difference)
+    double))
     (triangle_volume difference double) <= SURFACE_LIMBS.
 Proof. vm_compute. split; discriminate. Qed.
 Definition rational := Plus (Times sphere_a (Plus (dot3 difference difference) (Times double double)))
@@ -231,7 +234,8 @@ Theorem SURFACE_SIDE_LIMBS_holds : room (Times rational rational) <= SURFACE_SID
 Proof. vm_compute. split; discriminate. Qed.
 
 (* Coefficients of a(e) r^2 - |w x d(e)|^2: at most four terms like Delta *)
-Theorem SERIES_LIMBS_holds : room (Plus (Plus (Plus sphere_delta sphere_delta) sphere_delta) sphere_delta) <= SERIES_LIMBS.
+Theorem SERIES_LIMBS_holds : room (Plus (Plus (Plus sphere_delta sphere_delta) sphere_delta) sphere_delta) <=
+  SERIES_LIMBS.
 Proof. vm_compute. discriminate. Qed.
 
 (* rt-math, exact/fixed.rs: sums of six products of k >= 2 differences keep a bit for the sign in k N limbs. *)

@@ -39,14 +39,16 @@ Let k := exact tfar.
 Definition tn x2 x3 y2 y3 z2 z3 := tminor (difference y2 x2) (difference z3 x3) (difference y3 x3) (difference z2 x2).
 Definition tn1 := tn a2 a3 b2 b3 c2 c3. Definition tn2 := tn a3 a1 b3 b1 c3 c1. Definition tn3 := tn a1 a2 b1 b2 c1 c2.
 (* the turn from `f` to `t` around the point: n . ((t - f) x (p - f)) *)
-Definition tturn f1 f2 f3 t1 t2 t3 := tdot tn1 tn2 tn3 (tn f2 f3 t2 t3 p2 p3) (tn f3 f1 t3 t1 p3 p1) (tn f1 f2 t1 t2 p1 p2).
+Definition tturn f1 f2 f3 t1 t2 t3 := tdot tn1 tn2 tn3 (tn f2 f3 t2 t3 p2 p3) (tn f3 f1 t3 t1 p3 p1) (tn f1 f2 t1 t2
+  p1 p2).
 Definition tvolume := tdot tn1 tn2 tn3 (difference p1 a1) (difference p2 a2) (difference p3 a3).
 Definition terror :=
   Add (Mul (Mul (X TURN_ERROR (-45)) (Mul (Mul tedge tedge) tedge)) tfar) (X UNDERFLOW (-500)).
 Definition terror_2 :=
   Add (Mul (Mul (X TURN_ERROR_2 (-96)) (Mul (Mul tedge tedge) tedge)) tfar) (X UNDERFLOW (-500)).
 Definition tvolume_error := Add (Mul (Mul (X VOLUME_ERROR (-46)) (Mul tedge tedge)) tfar) (X UNDERFLOW (-500)).
-Ltac terms := unfold terror, tvolume_error, tvolume, tturn, tn1, tn2, tn3, tn, tedge, tfar, tmost, tmax, difference, tdot, tminor in *.
+Ltac terms := unfold terror, tvolume_error, tvolume, tturn, tn1, tn2, tn3, tn, tedge, tfar, tmost, tmax, difference,
+  tdot, tminor in *.
 
 (* All differences are in the range: FARTHEST, and one rounding. *)
 Hypothesis range : bounded tedge /\ bounded tfar.
@@ -58,7 +60,8 @@ Proof.
 Qed.
 Lemma most_le : forall x y z, x <= Rmax x (Rmax y z) /\ y <= Rmax x (Rmax y z) /\ z <= Rmax x (Rmax y z).
 Proof.
-  intros. pose proof (Rmax_l x (Rmax y z)). pose proof (Rmax_r x (Rmax y z)). pose proof (Rmax_l y z). pose proof (Rmax_r y z). lra.
+  intros. pose proof (Rmax_l x (Rmax y z)). pose proof (Rmax_r x (Rmax y z)). pose proof (Rmax_l y z).
+  pose proof (Rmax_r y z). lra.
 Qed.
 Definition edge_like f1 f2 f3 t1 t2 t3 := Rabs (t1 - f1) <= l /\ Rabs (t2 - f2) <= l /\ Rabs (t3 - f3) <= l.
 Definition far_like f1 f2 f3 := Rabs (p1 - f1) <= k /\ Rabs (p2 - f2) <= k /\ Rabs (p3 - f3) <= k.
@@ -90,7 +93,8 @@ Proof.
   rewrite l_size in P. rewrite k_size in Q. exact (conj P Q).
 Qed.
 
-Lemma bounded_turn : forall f1 f2 f3 t1 t2 t3, edge_like f1 f2 f3 t1 t2 t3 -> far_like f1 f2 f3 -> bounded (tturn f1 f2 f3 t1 t2 t3).
+Lemma bounded_turn : forall f1 f2 f3 t1 t2 t3, edge_like f1 f2 f3 t1 t2 t3 -> far_like f1 f2 f3 -> bounded (tturn f1
+  f2 f3 t1 t2 t3).
 Proof.
   intros f1 f2 f3 t1 t2 t3 (A & B & C) (A' & B' & C'). destruct range_each.
   destruct edges as ((E1 & E2 & E3) & _ & _ & F1 & F2 & F3).
@@ -100,8 +104,10 @@ Lemma minor_size : forall x y z w m n, 0 <= m -> 0 <= n -> Rabs x <= m -> Rabs y
   0 <= Rabs x * Rabs y + Rabs z * Rabs w <= 2 * (m * n).
 Proof.
   intros. pose proof (Rabs_pos x). pose proof (Rabs_pos y). pose proof (Rabs_pos z). pose proof (Rabs_pos w).
-  pose proof (mul2 (Rabs x) (Rabs y) m n ltac:(lra) ltac:(lra)). pose proof (mul2 (Rabs z) (Rabs w) m n ltac:(lra) ltac:(lra)).
-  assert (0 <= Rabs x * Rabs y) by (apply Rmult_le_pos; assumption). assert (0 <= Rabs z * Rabs w) by (apply Rmult_le_pos; assumption).
+  pose proof (mul2 (Rabs x) (Rabs y) m n ltac:(lra) ltac:(lra)).
+  pose proof (mul2 (Rabs z) (Rabs w) m n ltac:(lra) ltac:(lra)).
+  assert (0 <= Rabs x * Rabs y) by (apply Rmult_le_pos; assumption).
+  assert (0 <= Rabs z * Rabs w) by (apply Rmult_le_pos; assumption).
   lra.
 Qed.
 
@@ -109,11 +115,14 @@ Lemma turn_size : forall f1 f2 f3 t1 t2 t3, edge_like f1 f2 f3 t1 t2 t3 -> far_l
   size (tturn f1 f2 f3 t1 t2 t3) <= 12 * (l * l * l * k).
 Proof.
   intros f1 f2 f3 t1 t2 t3 HE HF.
-  destruct edges as ((E1 & E2 & E3) & _ & _ & F1 & F2 & F3). destruct HE as (G1 & G2 & G3). destruct HF as (K1 & K2 & K3).
+  destruct edges as ((E1 & E2 & E3) & _ & _ & F1 & F2 & F3). destruct HE as (G1 & G2 & G3).
+  destruct HF as (K1 & K2 & K3).
   destruct positive as [L0 K0]. terms. cbn [size].
-  pose proof (minor_size _ _ _ _ _ _ L0 L0 E2 F3 E3 F2) as N1. pose proof (minor_size _ _ _ _ _ _ L0 L0 E3 F1 E1 F3) as N2.
+  pose proof (minor_size _ _ _ _ _ _ L0 L0 E2 F3 E3 F2) as N1.
+  pose proof (minor_size _ _ _ _ _ _ L0 L0 E3 F1 E1 F3) as N2.
   pose proof (minor_size _ _ _ _ _ _ L0 L0 E1 F2 E2 F1) as N3.
-  pose proof (minor_size _ _ _ _ _ _ L0 K0 G2 K3 G3 K2) as M1. pose proof (minor_size _ _ _ _ _ _ L0 K0 G3 K1 G1 K3) as M2.
+  pose proof (minor_size _ _ _ _ _ _ L0 K0 G2 K3 G3 K2) as M1.
+  pose proof (minor_size _ _ _ _ _ _ L0 K0 G3 K1 G1 K3) as M2.
   pose proof (minor_size _ _ _ _ _ _ L0 K0 G1 K2 G2 K1) as M3.
   pose proof (mul2 _ _ _ _ N1 M1). pose proof (mul2 _ _ _ _ N2 M2). pose proof (mul2 _ _ _ _ N3 M3). lra.
 Qed.
@@ -131,9 +140,11 @@ Proof.
     - unfold UNDERFLOW. rewrite Rabs_pos_eq; [lra | apply Rlt_le, bp_pos]. }
   pose proof (plain_error_at terror e 9 (low terror) He BE eq_refl eq_refl ltac:(lia)) as Q.
   assert (LT : bp (low terror) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
-  assert (LT2 : bp (low (tturn f1 f2 f3 t1 t2 t3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (LT2 : bp (low (tturn f1 f2 f3 t1 t2 t3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute;
+    discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
-  assert (V : exact terror = 136 * u * (l * l * l * k) + UNDERFLOW /\ size terror = 136 * u * (l * l * l * k) + UNDERFLOW).
+  assert (V : exact terror = 136 * u * (l * l * l * k) + UNDERFLOW /\ size terror = 136 * u * (l * l * l * k) +
+    UNDERFLOW).
   { unfold terror. cbn [exact size]. rewrite l_size, k_size. fold l k. rewrite (Rabs_pos_eq UNDERFLOW) by lra.
     rewrite (Rabs_pos_eq TURN_ERROR) by (unfold TURN_ERROR; rewrite u_val; lra). unfold TURN_ERROR. split; ring. }
   destruct V as [V1 V2]. rewrite V1, V2 in Q.
@@ -142,7 +153,8 @@ Proof.
   apply Rabs_le_inv in Q. rewrite u_val in *. lra.
 Qed.
 
-(* In double-double it is off by at most 640 u^2 l^3 k + 2^-500 as computed, less what the test of its high part takes. *)
+(* In double-double it is off by at most 640 u^2 l^3 k + 2^-500 as computed, less what the test of its high part
+  takes. *)
 Theorem turn_error_2 : forall f1 f2 f3 t1 t2 t3 turn e, edge_like f1 f2 f3 t1 t2 t3 -> far_like f1 f2 f3 ->
   twice (tturn f1 f2 f3 t1 t2 t3) turn -> plain terror_2 e ->
   Rabs (turn - exact (tturn f1 f2 f3 t1 t2 t3)) <= (1 - 2 * u) * e.
@@ -156,9 +168,11 @@ Proof.
     - unfold UNDERFLOW. rewrite Rabs_pos_eq; [lra | apply Rlt_le, bp_pos]. }
   pose proof (plain_error_at terror_2 e 9 (low terror_2) He BE eq_refl eq_refl ltac:(lia)) as Q.
   assert (LT : bp (low terror_2) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
-  assert (LT2 : bp (low2 (tturn f1 f2 f3 t1 t2 t3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (LT2 : bp (low2 (tturn f1 f2 f3 t1 t2 t3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute;
+    discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
-  assert (V : exact terror_2 = 640 * (u * u) * (l * l * l * k) + UNDERFLOW /\ size terror_2 = 640 * (u * u) * (l * l * l * k) + UNDERFLOW).
+  assert (V : exact terror_2 = 640 * (u * u) * (l * l * l * k) + UNDERFLOW /\ size terror_2 = 640 * (u * u) * (l * l *
+    l * k) + UNDERFLOW).
   { unfold terror_2. cbn [exact size]. rewrite l_size, k_size. fold l k. rewrite (Rabs_pos_eq UNDERFLOW) by lra.
     rewrite (Rabs_pos_eq TURN_ERROR_2) by (unfold TURN_ERROR_2; rewrite u_val; lra). unfold TURN_ERROR_2. split; ring. }
   destruct V as [V1 V2]. rewrite V1, V2 in Q.
@@ -199,7 +213,8 @@ Proof.
   assert (B : bounded tvolume) by (terms; cbn [bounded]; repeat split; lra).
   assert (Z : size tvolume <= 6 * (l * l * k)).
   { terms. cbn [size].
-    pose proof (minor_size _ _ _ _ _ _ L0 L0 E2 F3 E3 F2) as N1. pose proof (minor_size _ _ _ _ _ _ L0 L0 E3 F1 E1 F3) as N2.
+    pose proof (minor_size _ _ _ _ _ _ L0 L0 E2 F3 E3 F2) as N1.
+    pose proof (minor_size _ _ _ _ _ _ L0 L0 E3 F1 E1 F3) as N2.
     pose proof (minor_size _ _ _ _ _ _ L0 L0 E1 F2 E2 F1) as N3.
     assert (M1 : 0 <= Rabs (p1 - a1) <= k) by (split; [apply Rabs_pos | assumption]).
     assert (M2 : 0 <= Rabs (p2 - a2) <= k) by (split; [apply Rabs_pos | assumption]).
@@ -214,7 +229,8 @@ Proof.
   assert (LT : bp (low tvolume_error) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
   assert (LT2 : bp (low tvolume) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
-  assert (V : exact tvolume_error = 64 * u * (l * l * k) + UNDERFLOW /\ size tvolume_error = 64 * u * (l * l * k) + UNDERFLOW).
+  assert (V : exact tvolume_error = 64 * u * (l * l * k) + UNDERFLOW /\ size tvolume_error = 64 * u * (l * l * k) +
+    UNDERFLOW).
   { unfold tvolume_error. cbn [exact size]. rewrite l_size, k_size. fold l k. rewrite (Rabs_pos_eq UNDERFLOW) by lra.
     rewrite (Rabs_pos_eq VOLUME_ERROR) by (unfold VOLUME_ERROR; rewrite u_val; lra). unfold VOLUME_ERROR. split; ring. }
   destruct V as [V1 V2]. rewrite V1, V2 in Q. assert (G : Rabs (v - exact tvolume) <= e).

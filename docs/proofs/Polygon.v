@@ -20,19 +20,23 @@ Proof.
   assert (Fa : forall x, F x -> F (Rabs x)) by (intros x Fx; now apply generic_format_abs).
   pose proof (RN_sum (Rabs left) (Rabs right) (Fa _ Fl) (Fa _ Fr)) as E2. set (s := RN (Rabs left + Rabs right)) in *.
   pose proof (RN_err (TURN_ERROR * s)) as E3. set (k := RN (TURN_ERROR * s)) in *.
-  assert (E4 : Rabs (error - (k + bp (-1022))) <= u * Rabs (k + bp (-1022))) by (apply RN_sum; [apply RN_F | apply F_bp; lia]).
+  assert (E4 : Rabs (error - (k + bp (-1022))) <= u * Rabs (k + bp (-1022))) by (apply RN_sum;
+    [apply RN_F | apply F_bp; lia]).
   small12 (-1022)%Z. set (T := bp (-1022)) in *. 
   pose proof (Rabs_pos left). pose proof (Rabs_pos right). pose proof (Rabs_pos L). pose proof (Rabs_pos Q).
   assert (A1 : Rabs L <= (1 + 4 * u) * Rabs left + / 100000000000 * T).
-  { pose proof (Rabs_triang left (- (left - L))) as Y. replace (left + - (left - L)) with L in Y by ring. rewrite Rabs_Ropp in Y.
+  { pose proof (Rabs_triang left (- (left - L))) as Y. replace (left + - (left - L)) with L in Y by ring.
+  rewrite Rabs_Ropp in Y.
     rewrite u_val in *. lra. }
   assert (A2 : Rabs Q <= (1 + 4 * u) * Rabs right + / 100000000000 * T).
-  { pose proof (Rabs_triang right (- (right - Q))) as Y. replace (right + - (right - Q)) with Q in Y by ring. rewrite Rabs_Ropp in Y.
+  { pose proof (Rabs_triang right (- (right - Q))) as Y. replace (right + - (right - Q)) with Q in Y by ring.
+  rewrite Rabs_Ropp in Y.
     rewrite u_val in *. lra. }
   set (a := Rabs left) in *. set (b := Rabs right) in *. rewrite (Rabs_pos_eq (a + b)) in E2 by lra.
   apply Rabs_le_inv in E2. assert (S0 : 0 <= s) by (rewrite u_val in E2; lra).
   unfold TURN_ERROR in E3. rewrite (Rabs_pos_eq (4 * u * s)) in E3 by (rewrite u_val; lra). apply Rabs_le_inv in E3.
-  assert (K0 : - T <= k) by (rewrite u_val in *; lra). rewrite (Rabs_pos_eq (k + T)) in E4 by lra. apply Rabs_le_inv in E4.
+  assert (K0 : - T <= k) by (rewrite u_val in *; lra). rewrite (Rabs_pos_eq (k + T)) in E4 by lra.
+  apply Rabs_le_inv in E4.
   assert (LOW : (4 - / 1000) * u * (a + b) + (1 - / 1000) * T <= error) by (rewrite u_val in *; lra).
   assert (D0 : Rabs (left - right - exactly) <= (3 + / 500) * u * (a + b) + / 1000 * T).
   { unfold exactly. replace (left - right - (L - Q)) with ((left - L) - (right - Q)) by ring. unfold Rminus at 1.
@@ -40,11 +44,13 @@ Proof.
   apply Rabs_le_inv in D0. assert (0 <= a + b) by lra. set (ab := a + b) in *. clearbody ab.
   split; intro V.
   - assert (0 < left - right).
-    { destruct (Rle_or_lt (left - right) 0) as [N|N]; [|exact N]. assert (value <= 0) by (rewrite <- RN_0; now apply RN_le).
+    { destruct (Rle_or_lt (left - right) 0) as [N|N]; [|exact N].
+    assert (value <= 0) by (rewrite <- RN_0; now apply RN_le).
       rewrite u_val in *. lra. }
     rewrite (Rabs_pos_eq (left - right)) in E1 by lra. apply Rabs_le_inv in E1. rewrite u_val in *. lra.
   - assert (left - right < 0).
-    { destruct (Rle_or_lt 0 (left - right)) as [N|N]; [|exact N]. assert (0 <= value) by (rewrite <- RN_0; now apply RN_le).
+    { destruct (Rle_or_lt 0 (left - right)) as [N|N]; [|exact N].
+    assert (0 <= value) by (rewrite <- RN_0; now apply RN_le).
       rewrite u_val in *. lra. }
     rewrite (Rabs_left (left - right)) in E1 by lra. apply Rabs_le_inv in E1. rewrite u_val in *. lra.
 Qed.

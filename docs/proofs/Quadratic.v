@@ -29,14 +29,16 @@ Proof.
   assert (P0 : - (/ 1000000000000000000000000000 * T) <= p) by (rewrite u_val in *; lra).
   assert (CV : CANCELLATION = / 1048576) by (unfold CANCELLATION; simpl; lra). rewrite CV in E4.
   assert (PB : p <= 1048577 * W).
-  { destruct (Rle_or_lt 0 p) as [Z|Z]; [|lra]. rewrite (Rabs_pos_eq (/ 1048576 * p)) in E4 by lra. apply Rabs_le_inv in E4.
+  { destruct (Rle_or_lt 0 p) as [Z|Z]; [|lra]. rewrite (Rabs_pos_eq (/ 1048576 * p)) in E4 by lra.
+  apply Rabs_le_inv in E4.
     rewrite u_val in *. lra. }
   assert (BW : B <= 1048578 * W) by (rewrite u_val in *; lra).
   assert (QW : Rabs q <= 1048580 * W).
   { assert (Rabs (q' + p) <= 2 * W).
     { pose proof (Rabs_triang d (- (d - (q' + p)))) as Y. replace (d + - (d - (q' + p))) with (q' + p) in Y by ring.
       rewrite Rabs_Ropp in Y. fold W in Y. rewrite u_val in *. lra. }
-    pose proof (Rabs_triang (q' + p) (- (q' - q) + - p)) as Y. replace (q' + p + (- (q' - q) + - p)) with q in Y by ring.
+    pose proof (Rabs_triang (q' + p) (- (q' - q) + - p)) as Y.
+    replace (q' + p + (- (q' - q) + - p)) with q in Y by ring.
     pose proof (Rabs_triang (- (q' - q)) (- p)) as Y2. rewrite !Rabs_Ropp in Y2.
     assert (Rabs p <= 1048577 * W) by (apply Rabs_le; lra). rewrite u_val in *. lra. }
   replace (d - (B + q)) with ((d - (q' + p)) + (q' - q) + (p - B)) by ring.

@@ -59,7 +59,8 @@ Proof.
   eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_mult. pose proof (Rabs_pos x).
   apply Rplus_le_compat.
   - rewrite Rmult_comm. apply Rmult_le_compat_r; [assumption|]. eapply Rle_trans; [apply He|]. unfold u. simpl. lra.
-  - eapply Rle_trans; [apply Ht|]. replace (-1075)%Z with (-1 + -1074)%Z by reflexivity. rewrite bp_add. simpl (bp (-1)).
+  - eapply Rle_trans; [apply Ht|]. replace (-1075)%Z with (-1 + -1074)%Z by reflexivity. rewrite bp_add.
+  simpl (bp (-1)).
     lra.
 Qed.
 (* Sums and differences of doubles: no exception for small ones. *)
@@ -87,7 +88,8 @@ Qed.
    A term lists the operations of a kernel: `X` a double that is given, `D` a difference of two given ones, then sums,
    differences, products, magnitudes and the larger of two. `computed` relates a term to every value that it may have:
    each operation is within its error, a relative `(1 + v)^w - 1` and an absolute `2^pe` for underflow. Plain doubles
-   are one instance (`v = u`), a fused multiply-add another (a product without error), double-double a third (`v = u^2`).
+   are one instance (`v = u`), a fused multiply-add another (a product without error), double-double a third (`v =
+     u^2`).
    `exact` is the value of the term in real numbers, `size` the sum of the magnitudes of its monomials. *)
 Inductive term :=
   | X (x : R) (q : Z)        (* given, at most 2^q *)
@@ -286,7 +288,8 @@ Proof.
     assert (V : Rabs (x * y) <= (1 + n) * (m1 * m2) + 5 * bp w).
     { replace (x * y) with ((x * y - exact a * exact b) + exact a * exact b) by ring.
       eapply Rle_trans; [apply Rabs_triang|]. rewrite (Rabs_mult (exact a)).
-      assert (Rabs (exact a) * Rabs (exact b) <= m1 * m2) by (apply Rmult_le_compat; try apply Rabs_pos; assumption). lra. }
+      assert (Rabs (exact a) * Rabs (exact b) <= m1 * m2) by (apply Rmult_le_compat; try apply Rabs_pos; assumption).
+      lra. }
     assert (V2 : g wm * Rabs (x * y) <= g wm * (1 + n) * (m1 * m2) + 5 * bp w).
     { apply Rle_trans with (g wm * ((1 + n) * (m1 * m2) + 5 * bp w)); [now apply Rmult_le_compat_l | nra]. }
     replace (z - exact a * exact b) with ((z - x * y) + (x * y - exact a * exact b)) by ring.
@@ -310,7 +313,8 @@ Proof.
 Qed.
 End Terms.
 
-(* Plain doubles, products fused or not: one rounding an operation; those of sums are counted with an underflow that they
+(* Plain doubles, products fused or not: one rounding an operation;
+  those of sums are counted with an underflow that they
    do not have, since a fused product may have one. *)
 Notation plain := (computed u 1 1 1 (-1075) (-1075)).
 Notation count := (roundings 1 1 1).

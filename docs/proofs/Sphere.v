@@ -78,7 +78,8 @@ Definition tside s := Add (Mul (X SIDE_ERROR (-50)) s) (X UNDERFLOW (-1000)).
 Ltac terms := unfold tdelta, terror, terror_a, tx, tb, ta, tc, tsquares, tr, tw, tdot3, w1, w2, w3 in *.
 
 Lemma A_pos : 0 <= A. Proof. unfold A. pose proof (sq_pos d1). pose proof (sq_pos d2). pose proof (sq_pos d3). lra. Qed.
-Lemma WW_pos : 0 <= WW. Proof. unfold WW. pose proof (sq_pos W1). pose proof (sq_pos W2). pose proof (sq_pos W3). lra. Qed.
+Lemma WW_pos : 0 <= WW. Proof. unfold WW. pose proof (sq_pos W1). pose proof (sq_pos W2). pose proof (sq_pos W3).
+lra. Qed.
 
 (* What underflows in the side of a point and its bound is below a part of 10^12 of UNDERFLOW. *)
 Theorem UNDERFLOW_holds : bp (low (tc 1025)) <= / 1000000000000 * UNDERFLOW /\
@@ -94,7 +95,8 @@ Proof.
   intros s H1 H2 H3 H4 Hs L. terms. error_of Hs E. rewrite !abs_sq in E. fold W1 W2 W3 in E.
   small 0%Z. replace (bp 0) with 1 in * by reflexivity.
   assert (LARGEST = bp 300 * bp 300) by (rewrite bp_sq; reflexivity).
-  assert (T : bp 301 = 2 * bp 300) by (replace 301%Z with (1 + 300)%Z by reflexivity; rewrite bp_add; simpl (bp 1); lra).
+  assert (T : bp 301 = 2 * bp 300) by (replace 301%Z with (1 + 300)%Z by reflexivity; rewrite bp_add; simpl (bp 1);
+    lra).
   assert (1 <= bp 300) by (replace 1 with (bp 0) by reflexivity; apply bp_le; lia).
   pose proof (sq_pos W1). pose proof (sq_pos W2). pose proof (sq_pos W3). pose proof (sq_pos r).
   apply Rabs_le_inv in E. rewrite u_val in E. set (p := bp 300) in *. clearbody p. rewrite T.
@@ -179,7 +181,8 @@ Proof.
   assert (CS : m1 * Rabs X1 + m2 * Rabs X2 + m3 * Rabs X3 <= 14143 / 10000 * (A * WW)).
   { apply below_root; [lra|].
     pose proof (cauchy_schwarz m1 m2 m3 (Rabs X1) (Rabs X2) (Rabs X3)) as P. rewrite !abs_sq in P.
-    pose proof (sq_pos X1). pose proof (sq_pos X2). pose proof (sq_pos X3). pose proof (sq_pos m1). pose proof (sq_pos m2).
+    pose proof (sq_pos X1). pose proof (sq_pos X2). pose proof (sq_pos X3). pose proof (sq_pos m1).
+    pose proof (sq_pos m2).
     pose proof (sq_pos m3). eapply Rle_trans; [exact P|].
     apply Rle_trans with ((2 * (A * WW)) * (A * WW)); [apply Rmult_le_compat; lra | nra]. }
   assert (K : 0 <= (3 + / 1000) * u <= 1) by (rewrite u_val; lra).
@@ -188,11 +191,13 @@ Proof.
   split.
   - eapply Rle_trans; [exact S|].
     assert (15 * (bp (-1068) * bp 402) <= bp (-600)).
-    { rewrite <- bp_add. apply Rle_trans with (bp (4 + (-1068 + 402))); [|apply bp_le; lia]. rewrite (bp_add 4). simpl (bp 4).
+    { rewrite <- bp_add. apply Rle_trans with (bp (4 + (-1068 + 402))); [|apply bp_le; lia]. rewrite (bp_add 4).
+    simpl (bp 4).
       pose proof (bp_pos (-1068 + 402)). lra. }
     set (Y := m1 * Rabs X1 + m2 * Rabs X2 + m3 * Rabs X3) in *. set (N := m1 * m1 + m2 * m2 + m3 * m3) in *.
     set (G := A * WW) in *. clearbody Y N G. rewrite u_val in *. lra.
-  - assert (V : forall x y m, Rabs (x - y) <= (3 + / 1000) * u * m + bp (-1068) -> Rabs y <= m <= bp 402 -> Rabs x <= bp 450).
+  - assert (V : forall x y m, Rabs (x - y) <= (3 + / 1000) * u * m + bp (-1068) -> Rabs y <= m <= bp 402 -> Rabs x <=
+    bp 450).
     { intros x y m P [I J]. replace x with ((x - y) + y) by ring. eapply Rle_trans; [apply Rabs_triang|].
       apply Rle_trans with (bp (2 + 402)); [|apply bp_le; lia]. rewrite bp_add. simpl (bp 2). destruct T.
       assert ((3 + / 1000) * u * m <= 1 * m) by (apply Rmult_le_compat_r; [pose proof (Rabs_pos y); lra | lra]). lra. }
@@ -213,14 +218,17 @@ Proof.
   pose proof (Rmult_le_pos _ _ A_pos WW_pos) as AW. pose proof (sq_pos r) as R0.
   pose proof (Rmult_le_pos _ _ A_pos R0) as AR.
   assert (LQ : bp (-451) <= A * Q).
-  { replace (-451)%Z with (-200 + -251)%Z by reflexivity. rewrite bp_add. apply Rmult_le_compat; auto; apply Rlt_le, bp_pos. }
+  { replace (-451)%Z with (-200 + -251)%Z by reflexivity. rewrite bp_add.
+  apply Rmult_le_compat; auto; apply Rlt_le, bp_pos. }
   assert (AQ : A * Q = A * WW + A * (r * r)) by (unfold Q; ring). rewrite AQ in LQ.
   assert (ER : Rabs (a * (r * r) - A * (r * r)) <= (3 + / 500) * u * (A * (r * r))).
-  { replace (a * (r * r) - A * (r * r)) with ((a - A) * (r * r)) by ring. rewrite Rabs_mult, (Rabs_pos_eq (r * r)) by lra.
+  { replace (a * (r * r) - A * (r * r)) with ((a - A) * (r * r)) by ring.
+  rewrite Rabs_mult, (Rabs_pos_eq (r * r)) by lra.
     replace ((3 + / 500) * u * (A * (r * r))) with ((3 + / 500) * u * A * (r * r)) by ring.
     now apply Rmult_le_compat_r. }
   replace (delta - Delta) with ((delta - (a * (r * r) - (x1 * x1 + x2 * x2 + x3 * x3)))
-    + (a * (r * r) - A * (r * r)) - (x1 * x1 + x2 * x2 + x3 * x3 - (X1 * X1 + X2 * X2 + X3 * X3))) by (unfold Delta; ring).
+    + (a * (r * r) - A * (r * r)) - (x1 * x1 + x2 * x2 + x3 * x3 - (X1 * X1 + X2 * X2 + X3 * X3))) by (unfold Delta;
+      ring).
   eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_Ropp. eapply Rle_trans; [apply Rplus_le_compat_r, Rabs_triang|].
   set (Y := x1 * x1 + x2 * x2 + x3 * x3) in *. set (Z := X1 * X1 + X2 * X2 + X3 * X3) in *. set (G := A * WW) in *.
   set (H := A * (r * r)) in *. set (ar := a * (r * r)) in *. clearbody Y Z G H ar.
@@ -240,10 +248,12 @@ Proof.
   assert (G : Rabs (delta - Delta) <= e); [|split; [exact G | now apply certain_sign]].
   destruct (square_top a Ha) as [AP AT]. pose proof (square_error a Ha) as PA.
   assert (ST : Rabs (s - Q) <= (7 * u) * Q /\ Rabs s <= bp 605).
-  { clear - Hs LQ HW1 HW2 HW3 Hr. terms. error_of Hs P. rewrite !abs_sq in P. fold W1 W2 W3 in P. fold WW in P. fold Q in P.
+  { clear - Hs LQ HW1 HW2 HW3 Hr. terms. error_of Hs P. rewrite !abs_sq in P. fold W1 W2 W3 in P. fold WW in P.
+  fold Q in P.
     small (-251)%Z. split; [rewrite u_val in *; lra|].
     assert (T : forall x, Rabs x <= bp 301 -> x * x <= bp 602).
-    { intros x H1. rewrite <- abs_sq. change 602%Z with (301 + 301)%Z. rewrite <- bp_sq. apply Rmult_le_compat; auto using Rabs_pos. }
+    { intros x H1. rewrite <- abs_sq. change 602%Z with (301 + 301)%Z. rewrite <- bp_sq.
+    apply Rmult_le_compat; auto using Rabs_pos. }
     pose proof (T _ HW1). pose proof (T _ HW2). pose proof (T _ HW3). pose proof (T _ Hr).
     assert (Q <= 4 * bp 602) by (unfold Q, WW; lra).
     assert (bp (-251) <= bp 602) by (apply bp_le; lia). pose proof (bp_pos (-251)).
@@ -267,9 +277,11 @@ Proof.
   apply Rabs_le_inv in ST. assert (0 < s) by (rewrite u_val in ST; lra).
   rewrite (Rabs_pos_eq s), (Rabs_pos_eq ea) in P by lra.
   assert (LQ' : bp (-451) <= A * Q).
-  { replace (-451)%Z with (-200 + -251)%Z by reflexivity. rewrite bp_add. apply Rmult_le_compat; auto; apply Rlt_le, bp_pos. }
+  { replace (-451)%Z with (-200 + -251)%Z by reflexivity. rewrite bp_add.
+  apply Rmult_le_compat; auto; apply Rlt_le, bp_pos. }
   assert (AS : 17 * u * (1 - 13 * u) * (A * Q) <= ea * s).
-  { apply Rle_trans with ((17 * u * (1 - 6 * u) * A) * ((1 - 7 * u) * Q)); [|rewrite u_val in *; apply Rmult_le_compat; nra].
+  { apply Rle_trans with ((17 * u * (1 - 6 * u) * A) * ((1 - 7 * u) * Q)); [|rewrite u_val in *;
+    apply Rmult_le_compat; nra].
     replace (17 * u * (1 - 6 * u) * A * ((1 - 7 * u) * Q)) with (17 * u * (1 - 6 * u) * (1 - 7 * u) * (A * Q)) by ring.
     apply Rmult_le_compat_r; [|rewrite u_val; lra]. pose proof (bp_pos (-451)). lra. }
   assert (AQ : A * Q = A * WW + A * (r * r)) by (unfold Q; ring).
@@ -301,7 +313,8 @@ Proof.
   assert (P0 : 0 <= P) by (unfold P; abs_pos; nra).
   assert (AW : A * WW <= A * Q) by (apply Rmult_le_compat_l; [apply A_pos | unfold Q; pose proof (sq_pos r); lra]).
   assert (LQ' : bp (-451) <= A * Q).
-  { replace (-451)%Z with (-200 + -251)%Z by reflexivity. rewrite bp_add. apply Rmult_le_compat; auto; apply Rlt_le, bp_pos. }
+  { replace (-451)%Z with (-200 + -251)%Z by reflexivity. rewrite bp_add.
+  apply Rmult_le_compat; auto; apply Rlt_le, bp_pos. }
   pose proof A_pos. pose proof WW_pos. 
   assert (T : bp (-1065) * bp (-1065) <= u * u * (A * Q)).
   { rewrite bp_sq. apply Rle_trans with (u * u * bp (-451)); [unfold u; rewrite <- !bp_add; apply bp_le; lia|].
@@ -311,7 +324,8 @@ Proof.
     - apply Rmult_le_compat; auto using Rabs_pos.
     - set (x := (4 + / 1000) * u * P). pose proof (sq_pos (x - bp (-1065))).
       assert (x * x <= 17 * (u * u) * (A * Q)).
-      { unfold x. replace ((4 + / 1000) * u * P * ((4 + / 1000) * u * P)) with ((4 + / 1000) * (4 + / 1000) * (u * u) * (P * P)) by ring.
+      { unfold x. replace ((4 + / 1000) * u * P * ((4 + / 1000) * u * P)) with ((4 + / 1000) * (4 + / 1000) * (u * u)
+        * (P * P)) by ring.
         assert (PQ : P * P <= A * Q) by lra. pose proof (bp_pos (-451)). clearbody A P Q. rewrite u_val. lra. }
       clearbody x A Q. set (t := bp (-1065)) in *. clearbody t. nra. }
   clear PB T. clearbody P. small (-251)%Z. apply Rabs_le_inv in PC. apply Rabs_le_inv in PE.

@@ -23,34 +23,42 @@ Let p1 := at_t o1 d1. Let p2 := at_t o2 d2. Let p3 := at_t o3 d3.
 Let q1 := o1 + exactly * d1. Let q2 := o2 + exactly * d2. Let q3 := o3 + exactly * d3.
 
 Lemma component : forall o d, F o ->
-  Rabs (at_t o d - (o + exactly * d)) <= u * Rabs (at_t o d) + 2 * u * ((Rabs t + bp (-1022)) * Rabs d) + 2 * bp (-1075).
+  Rabs (at_t o d - (o + exactly * d)) <= u * Rabs (at_t o d) + 2 * u * ((Rabs t + bp (-1022)) * Rabs d) + 2 * bp
+    (-1075).
 Proof.
   intros o d Fo. unfold at_t. pose proof (RN_back (o + RN (t * d))) as E1. pose proof (RN_err (t * d)) as E2.
   pose proof (RN_back exactly) as E3. fold t in E3. set (m := RN (t * d)) in *. set (p := RN (o + m)) in *.
   rewrite Rabs_mult in E2.
   assert (E4 : Rabs (t * d - exactly * d) <= (u * Rabs t + bp (-1075)) * Rabs d).
-  { replace (t * d - exactly * d) with ((t - exactly) * d) by ring. rewrite Rabs_mult. apply Rmult_le_compat_r; [apply Rabs_pos | assumption]. }
+  { replace (t * d - exactly * d) with ((t - exactly) * d) by ring. rewrite Rabs_mult.
+  apply Rmult_le_compat_r; [apply Rabs_pos | assumption]. }
   assert (H : bp (-1075) = u * bp (-1022)) by (unfold u; rewrite <- bp_add; reflexivity).
   replace (p - (o + exactly * d)) with ((p - (o + m)) + (m - t * d) + (t * d - exactly * d)) by ring.
   eapply Rle_trans; [apply Rabs_triang|]. eapply Rle_trans; [apply Rplus_le_compat_r, Rabs_triang|].
-  rewrite H in E4 at 1. replace ((u * Rabs t + u * bp (-1022)) * Rabs d) with (u * ((Rabs t + bp (-1022)) * Rabs d)) in E4 by ring.
+  rewrite H in E4 at 1. replace ((u * Rabs t + u * bp (-1022)) * Rabs d) with (u * ((Rabs t + bp (-1022)) * Rabs d))
+    in E4 by ring.
   assert (u * (Rabs t * Rabs d) <= u * ((Rabs t + bp (-1022)) * Rabs d)).
-  { apply Rmult_le_compat_l; [apply Rlt_le, u_pos|]. apply Rmult_le_compat_r; [apply Rabs_pos|]. pose proof (bp_pos (-1022)). lra. }
+  { apply Rmult_le_compat_l; [apply Rlt_le, u_pos|]. apply Rmult_le_compat_r; [apply Rabs_pos|].
+  pose proof (bp_pos (-1022)). lra. }
   lra.
 Qed.
 
-(* The sum of the errors of the components, so the length as well, is within the bound: of the way (|t| + 2^-1022) |d| and
+(* The sum of the errors of the components, so the length as well, is within the bound: of the way (|t| + 2^-1022) |d|
+  and
    of the point, through at most 16 roundings. *)
 Theorem WAY_ERROR_holds : forall e,
   (1 - 16 * u) * (WAY_ERROR * ((Rabs t + bp (-1022)) * norm d1 d2 d3) + POINT_ERROR * norm p1 p2 p3 + UNDERFLOW) <= e ->
   norm (p1 - q1) (p2 - q2) (p3 - q3) <= (1 - 32 * u) * e.
 Proof.
-  intros e He. pose proof (component o1 d1 F1) as C1. pose proof (component o2 d2 F2) as C2. pose proof (component o3 d3 F3) as C3.
-  fold p1 q1 in C1. fold p2 q2 in C2. fold p3 q3 in C3. apply Rle_trans with ((1 - 32 * u) * ((1 - 16 * u) * (WAY_ERROR * ((Rabs t + bp (-1022)) * norm d1 d2 d3)
+  intros e He. pose proof (component o1 d1 F1) as C1. pose proof (component o2 d2 F2) as C2.
+  pose proof (component o3 d3 F3) as C3.
+  fold p1 q1 in C1. fold p2 q2 in C2. fold p3 q3 in C3. apply Rle_trans with ((1 - 32 * u) * ((1 - 16 * u) *
+    (WAY_ERROR * ((Rabs t + bp (-1022)) * norm d1 d2 d3)
     + POINT_ERROR * norm p1 p2 p3 + UNDERFLOW))); [|apply Rmult_le_compat_l; [rewrite u_val; lra | exact He]].
   unfold norm, WAY_ERROR, POINT_ERROR, UNDERFLOW.
   assert (T : bp (-1075) <= / 1000000000000 * bp (-1000)) by (apply bp_part12; lia). pose proof (bp_pos (-1000)).
-  pose proof (Rabs_pos p1). pose proof (Rabs_pos p2). pose proof (Rabs_pos p3). pose proof (bp_pos (-1022)). pose proof (Rabs_pos t).
+  pose proof (Rabs_pos p1). pose proof (Rabs_pos p2). pose proof (Rabs_pos p3). pose proof (bp_pos (-1022)).
+  pose proof (Rabs_pos t).
   assert (W : forall d, 0 <= (Rabs t + bp (-1022)) * Rabs d) by (intro; apply Rmult_le_pos; [lra | apply Rabs_pos]).
   pose proof (W d1). pose proof (W d2). pose proof (W d3).
   replace ((Rabs t + bp (-1022)) * (Rabs d1 + Rabs d2 + Rabs d3)) with
@@ -71,7 +79,8 @@ Proof.
     { pose proof (FLT_plus_error_N_round_ex radix2 (-1074) 53 even p (- c) Fp (F_opp c Fc)) as (x & Hx & Hr).
       change (round radix2 (FLT_exp (-1074) 53) (Znearest even) (p + - c)) with (RN (p - c)) in Hr.
       replace (RN (p - c) - (p - c)) with (- (RN (p - c) * x)) by lra. rewrite Rabs_Ropp, Rabs_mult, Rmult_comm.
-      apply Rmult_le_compat_r; [apply Rabs_pos|]. eapply Rle_trans; [apply Hx|]. unfold u_ro, u. simpl. lra. } replace (RN (p - c) - (q - c)) with ((RN (p - c) - (p - c)) + (p - q)) by ring.
+      apply Rmult_le_compat_r; [apply Rabs_pos|]. eapply Rle_trans; [apply Hx|]. unfold u_ro, u. simpl. lra.
+      } replace (RN (p - c) - (q - c)) with ((RN (p - c) - (p - c)) + (p - q)) by ring.
     eapply Rle_trans; [apply Rabs_triang|]. lra. }
   pose proof (S p1 q1 c1 (RN_F _) G1). pose proof (S p2 q2 c2 (RN_F _) G2). pose proof (S p3 q3 c3 (RN_F _) G3).
   assert (T : bp (-1075) <= / 1000000000000 * bp (-1000)) by (apply bp_part12; lia). pose proof (bp_pos (-1000)).
@@ -114,12 +123,14 @@ Proof.
     assert (Y1 : 0 <= Rabs f1 <= M1) by (split; [apply Rabs_pos | apply Rmax_r]).
     assert (Y2 : 0 <= Rabs f2 <= M2) by (split; [apply Rabs_pos | apply Rmax_r]).
     assert (Y3 : 0 <= Rabs f3 <= M3) by (split; [apply Rabs_pos | apply Rmax_r]).
-    pose proof (mul2 _ _ _ _ X2 Y3). pose proof (mul2 _ _ _ _ X3 Y2). pose proof (mul2 _ _ _ _ X3 Y1). pose proof (mul2 _ _ _ _ X1 Y3).
+    pose proof (mul2 _ _ _ _ X2 Y3). pose proof (mul2 _ _ _ _ X3 Y2). pose proof (mul2 _ _ _ _ X3 Y1).
+    pose proof (mul2 _ _ _ _ X1 Y3).
     pose proof (mul2 _ _ _ _ X1 Y2). pose proof (mul2 _ _ _ _ X2 Y1). unfold E.
     pose proof (sq_pos M1). pose proof (sq_pos M2). pose proof (sq_pos M3). lra. }
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos. unfold norm. unfold PRODUCT_ERROR in Hb.
   assert (E2 : 0 <= E * E) by apply sq_pos. set (G := E * E) in *. clearbody G.
-  set (s1 := size t1) in *. set (s2 := size t2) in *. set (s3 := size t3) in *. clearbody s1 s2 s3. rewrite u_val in *. lra.
+  set (s1 := size t1) in *. set (s2 := size t2) in *. set (s3 := size t3) in *. clearbody s1 s2 s3.
+  rewrite u_val in *. lra.
 Qed.
 (* What underflows in a component is below a part of 10^12 of UNDERFLOW. *)
 Theorem UNDERFLOW_holds : bp (low t1) <= / 1000000000000 * UNDERFLOW /\ bp (-1075) <= / 1000000000000 * UNDERFLOW.

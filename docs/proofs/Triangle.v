@@ -18,12 +18,16 @@ Definition AREA_ERROR := 16 * u.
 Lemma permanent : forall x1 x2 x3 y1 y2 y3 z1 z2 z3 X1 X2 X3 Y Z1 Z2 Z3,
   0 <= x1 <= X1 -> 0 <= x2 <= X2 -> 0 <= x3 <= X3 -> 0 <= y1 <= Y -> 0 <= y2 <= Y -> 0 <= y3 <= Y ->
   0 <= z1 <= Z1 -> 0 <= z2 <= Z2 -> 0 <= z3 <= Z3 ->
-  x1 * (y2 * z3 + y3 * z2) + x2 * (y3 * z1 + y1 * z3) + x3 * (y1 * z2 + y2 * z1) <= Y * ((X1 + X2 + X3) * (Z1 + Z2 + Z3)).
+  x1 * (y2 * z3 + y3 * z2) + x2 * (y3 * z1 + y1 * z3) + x3 * (y1 * z2 + y2 * z1) <= Y * ((X1 + X2 + X3) * (Z1 + Z2 +
+    Z3)).
 Proof.
   intros x1 x2 x3 y1 y2 y3 z1 z2 z3 X1 X2 X3 Y Z1 Z2 Z3 A1 A2 A3 B1 B2 B3 C1 C2 C3.
-  pose proof (mul3 _ _ _ _ _ _ A1 B2 C3). pose proof (mul3 _ _ _ _ _ _ A1 B3 C2). pose proof (mul3 _ _ _ _ _ _ A2 B3 C1).
-  pose proof (mul3 _ _ _ _ _ _ A2 B1 C3). pose proof (mul3 _ _ _ _ _ _ A3 B1 C2). pose proof (mul3 _ _ _ _ _ _ A3 B2 C1).
-  assert (T : forall a b c, 0 <= a -> 0 <= b -> 0 <= c -> 0 <= a * b * c) by (intros; repeat apply Rmult_le_pos; assumption).
+  pose proof (mul3 _ _ _ _ _ _ A1 B2 C3). pose proof (mul3 _ _ _ _ _ _ A1 B3 C2).
+  pose proof (mul3 _ _ _ _ _ _ A2 B3 C1).
+  pose proof (mul3 _ _ _ _ _ _ A2 B1 C3). pose proof (mul3 _ _ _ _ _ _ A3 B1 C2).
+  pose proof (mul3 _ _ _ _ _ _ A3 B2 C1).
+  assert (T : forall a b c, 0 <= a -> 0 <= b -> 0 <= c -> 0 <= a * b * c) by (intros; repeat apply Rmult_le_pos;
+    assumption).
   pose proof (T X1 Y Z1 ltac:(lra) ltac:(lra) ltac:(lra)). pose proof (T X2 Y Z2 ltac:(lra) ltac:(lra) ltac:(lra)).
   pose proof (T X3 Y Z3 ltac:(lra) ltac:(lra) ltac:(lra)). lra.
 Qed.
@@ -54,8 +58,10 @@ Definition te1 := D b1 a1 301. Definition te2 := D b2 a2 301. Definition te3 := 
 Definition tf1 := D c1 a1 301. Definition tf2 := D c2 a2 301. Definition tf3 := D c3 a3 301.
 Definition ts1 := D o1 a1 301. Definition ts2 := D o2 a2 301. Definition ts3 := D o3 a3 301.
 Definition td1 := X d1 100. Definition td2 := X d2 100. Definition td3 := X d3 100.
-Definition tp1 := tminor td2 tf3 td3 tf2. Definition tp2 := tminor td3 tf1 td1 tf3. Definition tp3 := tminor td1 tf2 td2 tf1.
-Definition tq1 := tminor ts2 te3 ts3 te2. Definition tq2 := tminor ts3 te1 ts1 te3. Definition tq3 := tminor ts1 te2 ts2 te1.
+Definition tp1 := tminor td2 tf3 td3 tf2. Definition tp2 := tminor td3 tf1 td1 tf3.
+Definition tp3 := tminor td1 tf2 td2 tf1.
+Definition tq1 := tminor ts2 te3 ts3 te2. Definition tq2 := tminor ts3 te1 ts1 te3.
+Definition tq3 := tminor ts1 te2 ts2 te1.
 Definition tn1 := tminor te2 tf3 te3 tf2.
 Definition tsum := tdot te1 te2 te3 tp1 tp2 tp3.
 Definition tv := tdot ts1 ts2 ts3 tp1 tp2 tp3.
@@ -68,7 +74,8 @@ Definition terror := Mul tspread (X reach 100).
 Definition theight_error := Mul tspread tedge.
 Definition tleans := Mul (Mul (Mul (X ERROR (-48)) tedge) tedge) (X reach 100).
 Definition tarea := Mul (Mul (X AREA_ERROR (-48)) tedge) tedge.
-Ltac terms := unfold terror, theight_error, tleans, tarea, tspread, tsize, tedge, theight, tw, tv, tsum, tn1, tq1, tq2, tq3,
+Ltac terms := unfold terror, theight_error, tleans, tarea, tspread, tsize, tedge, theight, tw, tv, tsum, tn1, tq1,
+  tq2, tq3,
   tp1, tp2, tp3, td1, td2, td3, ts1, ts2, ts3, tf1, tf2, tf3, te1, te2, te3, tdot, tminor in *.
 Ltac named H := fold e1 e2 e3 f1 f2 f3 s1 s2 s3 in H; fold M1 M2 M3 in H; fold E S in H.
 
@@ -111,7 +118,8 @@ Qed.
 Lemma sizes : size tsum <= reach * (E * E) /\ size tv <= reach * (S * E) /\ size tw <= reach * (S * E) /\
   size theight <= E * (E * S) /\ size tn1 <= E * E.
 Proof.
-  destruct pieces as (_ & _ & _ & _ & (X1 & X2 & X3) & (Y1 & Y2 & Y3) & SP & EP & _). terms. cbn [size]. fold e1 e2 e3 f1 f2 f3 s1 s2 s3.
+  destruct pieces as (_ & _ & _ & _ & (X1 & X2 & X3) & (Y1 & Y2 & Y3) & SP & EP & _). terms. cbn [size].
+  fold e1 e2 e3 f1 f2 f3 s1 s2 s3.
   assert (D1' : 0 <= Rabs d1 <= reach) by (split; [apply Rabs_pos | assumption]).
   assert (D2' : 0 <= Rabs d2 <= reach) by (split; [apply Rabs_pos | assumption]).
   assert (D3' : 0 <= Rabs d3 <= reach) by (split; [apply Rabs_pos | assumption]).
@@ -128,7 +136,8 @@ Proof.
     pose proof (permanent _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ Y1 Y2 Y3 Z1 Z2 Z3 X1 X2 X3). lra.
   - pose proof (mul2 _ _ _ _ X2 Y3). pose proof (mul2 _ _ _ _ X3 Y2).
     assert (0 <= M1) by lra. assert (0 <= M2) by lra. assert (0 <= M3) by lra.
-    assert (0 <= M1 * M2) by (apply Rmult_le_pos; assumption). assert (0 <= M1 * M3) by (apply Rmult_le_pos; assumption).
+    assert (0 <= M1 * M2) by (apply Rmult_le_pos; assumption).
+    assert (0 <= M1 * M3) by (apply Rmult_le_pos; assumption).
     pose proof (sq_pos M1). pose proof (sq_pos M2). pose proof (sq_pos M3). nra.
 Qed.
 
@@ -155,7 +164,8 @@ Hypotheses (Hsum : plain tsum sum) (Hv : plain tv v) (Hw : plain tw w) (Herror :
 Lemma terror_value : exact terror = ERROR * E * (E + S) * reach /\ size terror = ERROR * E * (E + S) * reach.
 Proof.
   destruct pieces as (_ & _ & _ & RP & _ & _ & _ & _ & RR). terms. cbn [exact size]. fold e1 e2 e3 f1 f2 f3 s1 s2 s3.
-  rewrite (Rabs_pos_eq ERROR) by (unfold ERROR; rewrite u_val; lra). rewrite (Rabs_pos_eq reach) by lra. fold M1 M2 M3. fold E S.
+  rewrite (Rabs_pos_eq ERROR) by (unfold ERROR; rewrite u_val; lra). rewrite (Rabs_pos_eq reach) by lra.
+  fold M1 M2 M3. fold E S.
   auto.
 Qed.
 Lemma error_low : (18 - / 1000) * u * (reach * (E * (E + S))) <= error /\ bp (-460) <= u * (reach * (E * (E + S))).
@@ -196,11 +206,15 @@ Proof.
     Rabs (z - exact t) <= (7 + / 500) * u * m + / 1000 * u * (reach * (E * (E + S)))).
   { intros t z m H B N L M. pose proof (plain_error_at t z 7 (low t) H B N eq_refl ltac:(lia)) as P.
     pose proof (T _ L). destruct (top_ok t B). pose proof (Rabs_pos (exact t)).
-    assert ((7 + / 1000) * u * size t <= (7 + / 500) * u * m) by (pose proof u_pos; apply Rmult_le_compat; try lra; nra). lra. }
+    assert ((7 + / 1000) * u * size t <= (7 + / 500) * u * m) by (pose proof u_pos; apply Rmult_le_compat; try lra;
+      nra). lra. }
   split; [|split].
-  - apply (G tsum); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute; reflexivity | vm_compute; discriminate].
-  - apply (G tv); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute; reflexivity | vm_compute; discriminate].
-  - apply (G tw); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute; reflexivity | vm_compute; discriminate].
+  - apply (G tsum); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute;
+    reflexivity | vm_compute; discriminate].
+  - apply (G tv); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute;
+    reflexivity | vm_compute; discriminate].
+  - apply (G tw); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute;
+    reflexivity | vm_compute; discriminate].
 Qed.
 
 (* The three volumes and their sum, u = (sum - v) - w rounded twice more, are off by at most 18 u D E (E + S) as
@@ -228,7 +242,8 @@ Proof.
   clearbody g h Sum V W. clear - L P1 P2 P3 Q1 Q2 B1 B2 B3 H H0.
   set (m := RN (sum - v)) in *. set (n := RN (m - w)) in *. clearbody m n. rewrite u_val in *.
   assert (Y1 : Rabs (sum - v) <= (1 + / 1000000) * (g + h)).
-  { apply Rabs_le_inv in P1. apply Rabs_le_inv in P2. apply Rabs_le_inv in B1. apply Rabs_le_inv in B2. apply Rabs_le. lra. }
+  { apply Rabs_le_inv in P1. apply Rabs_le_inv in P2. apply Rabs_le_inv in B1. apply Rabs_le_inv in B2.
+  apply Rabs_le. lra. }
   assert (Y2 : Rabs (m - w) <= (1 + / 100000) * (g + 2 * h)).
   { assert (H1 : Rabs (m - (sum - v)) <= / 1000000 * (g + h)) by lra. apply Rabs_le_inv in H1.
     apply Rabs_le_inv in P3. apply Rabs_le_inv in B3. apply Rabs_le_inv in Y1. apply Rabs_le. lra. }
@@ -266,7 +281,8 @@ Proof.
       apply Rle_trans with (u * bp (-460)); [unfold u; rewrite <- bp_add; apply bp_le; lia|]. unfold ERROR.
       pose proof u_pos. pose proof (bp_pos (-460)). apply Rmult_le_compat; lra. }
   pose proof (bp_pos (-460)). eapply Rle_trans; [|exact Y]. eapply Rle_trans; [exact P|].
-  replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold ERROR; ring).
+  replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold
+    ERROR; ring).
   assert ((7 + / 1000) * u * size tsum <= (7 + / 1000) * (u * (reach * (E * E)))).
   { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
   set (G := u * (reach * (E * E))) in *. clearbody G. rewrite u_val in *. lra.
@@ -293,18 +309,21 @@ Proof.
   { apply bound_low with (t := tspread); auto.
     - terms. cbn [bounded]. repeat split; auto. unfold ERROR. constant.
     - vm_compute. lia.
-    - terms. cbn [size]. fold e1 e2 e3 f1 f2 f3 s1 s2 s3. rewrite (Rabs_pos_eq ERROR) by (unfold ERROR; rewrite u_val; lra). reflexivity.
+    - terms. cbn [size]. fold e1 e2 e3 f1 f2 f3 s1 s2 s3. rewrite (Rabs_pos_eq ERROR) by (unfold ERROR;
+      rewrite u_val; lra). reflexivity.
     - vm_compute. discriminate.
     - rewrite Rmult_assoc. apply Rle_trans with (u * (u * (bp (-151) * bp (-151)))).
       + unfold u. rewrite <- !bp_add. apply bp_le. lia.
       + pose proof u_pos. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat; try lra.
         rewrite <- bp_add. apply Rlt_le, bp_pos. unfold ERROR. lra. }
   assert (Ye : (1 - 4 * u) * E <= edge).
-  { clear - Hedge LE He1 He2 He3 Hf1 Hf2 Hf3. terms. error_of Hedge Q. fold e1 e2 e3 f1 f2 f3 in Q. fold M1 M2 M3 in Q. fold E in Q.
+  { clear - Hedge LE He1 He2 He3 Hf1 Hf2 Hf3. terms. error_of Hedge Q. fold e1 e2 e3 f1 f2 f3 in Q.
+  fold M1 M2 M3 in Q. fold E in Q.
     small (-151)%Z. apply Rabs_le_inv in Q. clearbody E. rewrite u_val in *. lra. }
   pose proof (RN_err (spread * edge)) as P2.
   assert (ERE : 0 <= (1 - 21 * u) * (ERROR * E * (E + S))).
-  { apply Rmult_le_pos; [rewrite u_val; lra|]. apply Rmult_le_pos; [apply Rmult_le_pos; [unfold ERROR; rewrite u_val; lra | lra] | lra]. }
+  { apply Rmult_le_pos; [rewrite u_val; lra|]. apply Rmult_le_pos; [apply Rmult_le_pos; [unfold ERROR; rewrite u_val;
+    lra | lra] | lra]. }
   assert (Y2 : (1 - 26 * u) * (18 * (u * (E * (E * (E + S))))) <= spread * edge).
   { apply Rle_trans with (((1 - 21 * u) * (ERROR * E * (E + S))) * ((1 - 4 * u) * E)).
     - replace ((1 - 21 * u) * (ERROR * E * (E + S)) * ((1 - 4 * u) * E)) with
@@ -317,8 +336,10 @@ Proof.
   eapply Rle_trans; [exact P|]. clear P.
   assert ((8 + / 1000) * u * size theight <= (8 + / 1000) * (u * (E * (E * (E + S))))).
   { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos|].
-    eapply Rle_trans; [exact Z1|]. apply Rmult_le_compat_l; [assumption|]. apply Rmult_le_compat_l; [assumption | lra]. }
-  set (G := u * (E * (E * (E + S)))) in *. set (r := RN (spread * edge)) in *. set (sp := spread * edge) in *. clearbody G r sp.
+    eapply Rle_trans; [exact Z1|]. apply Rmult_le_compat_l; [assumption|].
+    apply Rmult_le_compat_l; [assumption | lra]. }
+  set (G := u * (E * (E * (E + S)))) in *. set (r := RN (spread * edge)) in *. set (sp := spread * edge) in *.
+  clearbody G r sp.
   apply Rabs_le_inv in P2. rewrite u_val in *. lra.
 Qed.
 
@@ -340,13 +361,15 @@ Proof.
   pose proof (plain_error_at tarea e 8 (low tarea) He BE eq_refl eq_refl ltac:(lia)) as P2.
   assert (LT2 : bp (low tarea) <= / 1000000000000 * bp (-408)) by (apply bp_part12; vm_compute; discriminate).
   assert (V2 : exact tarea = 16 * (u * (E * E)) /\ size tarea = 16 * (u * (E * E))).
-  { terms. cbn [exact size]. fold e1 e2 e3 f1 f2 f3. rewrite (Rabs_pos_eq AREA_ERROR) by (unfold AREA_ERROR; rewrite u_val; lra).
+  { terms. cbn [exact size]. fold e1 e2 e3 f1 f2 f3. rewrite (Rabs_pos_eq AREA_ERROR) by (unfold AREA_ERROR;
+    rewrite u_val; lra).
     fold M1 M2 M3. fold E. unfold AREA_ERROR. split; ring. }
   destruct V2 as [V2 V3]. rewrite V2, V3 in P2. assert (bp (-408) <= bp (-355)) by (apply bp_le; lia).
   pose proof (bp_pos (-355)). assert (Q : Rabs (n - exact tn1) <= e).
   { eapply Rle_trans; [exact P|]. clear P.
     assert ((4 + / 1000) * u * size tn1 <= (4 + / 1000) * (u * (E * E))).
-    { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
+    { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l;
+      [apply Rlt_le, u_pos | assumption]. }
     set (G := u * (E * E)) in *. clearbody G. apply Rabs_le_inv in P2. rewrite u_val in *. lra. }
   change (exact tn1) with n1 in Q. split; [exact Q|]. intros Hn N0. rewrite N0 in Q. rewrite Rminus_0_r in Q. lra.
 Qed.
@@ -354,10 +377,12 @@ Qed.
 (* `slope_sign`: the sum again, with the products in another order; the bound is that of `surely_leans`. *)
 Definition tslope := let n x2 y3 x3 y2 := tminor x2 y3 x3 y2 in
   tdot (n td2 te3 td3 te2) (n td3 te1 td1 te3) (n td1 te2 td2 te1) tf1 tf2 tf3.
-Theorem PLANE_ERROR_holds : forall slope e edge, plain tslope slope -> plain tleans e -> plain tedge edge -> SHORTEST < edge ->
+Theorem PLANE_ERROR_holds : forall slope e edge, plain tslope slope -> plain tleans e -> plain tedge edge -> SHORTEST
+  < edge ->
   Rabs (slope - exact tslope) <= e /\ (slope > e -> 0 < exact tslope) /\ (slope < - e -> exact tslope < 0).
 Proof.
-  intros slope e edge Hs He Hedge L. destruct pieces as (A1 & A2 & A3 & A4 & (X1 & X2 & X3) & (Y1 & Y2 & Y3) & SP & EP & RR).
+  intros slope e edge Hs He Hedge L. destruct pieces as (A1 & A2 & A3 & A4 & (X1 & X2 & X3) & (Y1 & Y2 & Y3) & SP & EP
+    & RR).
   pose proof (SHORTEST_holds edge Hedge L) as LE.
   assert (EE : bp (-151) * bp (-151) <= E * E) by (apply Rmult_le_compat; try lra; apply Rlt_le, bp_pos).
   assert (X : bp (-460) <= u * (reach * (E * E))).
@@ -386,20 +411,23 @@ Proof.
       pose proof u_pos. pose proof (bp_pos (-460)). apply Rmult_le_compat; lra. }
   assert (R : Rabs (slope - exact tslope) <= e); [|split; [exact R | now apply certain_sign]].
   pose proof (bp_pos (-460)). eapply Rle_trans; [|exact Y]. eapply Rle_trans; [exact Q|].
-  replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold ERROR; ring).
+  replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold
+    ERROR; ring).
   assert ((7 + / 1000) * u * size tslope <= (7 + / 1000) * (u * (reach * (E * E)))).
   { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
   set (G := u * (reach * (E * E))) in *. clearbody G. rewrite u_val in *. lra.
 Qed.
 End Triangle.
 
-(* `height_sign`: n . (a - o) for edges and a - o with E S < 2^300; the bound 18 u E (E S) + 2^-500, with E and S within four
+(* `height_sign`: n . (a - o) for edges and a - o with E S < 2^300;
+  the bound 18 u E (E S) + 2^-500, with E and S within four
    roundings and its own roundings. *)
 Section Height.
 Variables a1 a2 a3 b1 b2 b3 c1 c2 c3 o1 o2 o3 E S : R.
 Let e1 := b1 - a1. Let e2 := b2 - a2. Let e3 := b3 - a3. Let f1 := c1 - a1. Let f2 := c2 - a2. Let f3 := c3 - a3.
 Let s1 := a1 - o1. Let s2 := a2 - o2. Let s3 := a3 - o3.
-Hypotheses (E0 : 0 <= E) (S0 : 0 <= S) (Hm : Rmax (Rabs e1) (Rabs f1) + Rmax (Rabs e2) (Rabs f2) + Rmax (Rabs e3) (Rabs f3) <= E)
+Hypotheses (E0 : 0 <= E) (S0 : 0 <= S) (Hm : Rmax (Rabs e1) (Rabs f1) + Rmax (Rabs e2) (Rabs f2) + Rmax (Rabs e3)
+  (Rabs f3) <= E)
   (Hs : Rabs s1 + Rabs s2 + Rabs s3 <= S).
 Hypotheses (He1 : Rabs e1 <= bp 301) (He2 : Rabs e2 <= bp 301) (He3 : Rabs e3 <= bp 301)
   (Hf1 : Rabs f1 <= bp 301) (Hf2 : Rabs f2 <= bp 301) (Hf3 : Rabs f3 <= bp 301)
@@ -413,7 +441,8 @@ Theorem UNDERFLOW_holds : forall h e, plain theight_of_plane h ->
   (h > e -> 0 < exact theight_of_plane) /\ (h < - e -> exact theight_of_plane < 0).
 Proof.
   intros h e Hh He. apply certain_sign.
-  assert (B : bounded theight_of_plane) by (unfold theight_of_plane, tdot, tminor; cbn [bounded]; repeat split; assumption).
+  assert (B : bounded theight_of_plane) by (unfold theight_of_plane, tdot, tminor; cbn [bounded]; repeat split;
+    assumption).
   pose proof (plain_error_at _ h 8 (low theight_of_plane) Hh B eq_refl eq_refl ltac:(lia)) as Q.
   assert (LT : bp (low theight_of_plane) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
@@ -426,13 +455,17 @@ Proof.
     assert (Y2 : 0 <= Rabs f2 <= Rmax (Rabs e2) (Rabs f2)) by (split; [apply Rabs_pos | apply Rmax_r]).
     assert (Y3 : 0 <= Rabs f3 <= Rmax (Rabs e3) (Rabs f3)) by (split; [apply Rabs_pos | apply Rmax_r]).
     pose proof (Rabs_pos s1). pose proof (Rabs_pos s2). pose proof (Rabs_pos s3).
-    assert (Z1 : 0 <= Rabs s1 <= S) by lra. assert (Z2 : 0 <= Rabs s2 <= S) by lra. assert (Z3 : 0 <= Rabs s3 <= S) by lra.
+    assert (Z1 : 0 <= Rabs s1 <= S) by lra. assert (Z2 : 0 <= Rabs s2 <= S) by lra.
+    assert (Z3 : 0 <= Rabs s3 <= S) by lra.
     pose proof (permanent _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ X1 X2 X3 Z1 Z2 Z3 Y1 Y2 Y3) as K.
-    set (m1 := Rmax (Rabs e1) (Rabs f1)) in *. set (m2 := Rmax (Rabs e2) (Rabs f2)) in *. set (m3 := Rmax (Rabs e3) (Rabs f3)) in *.
-    assert (S * ((m1 + m2 + m3) * (m1 + m2 + m3)) <= S * (E * E)) by (apply Rmult_le_compat_l; [assumption|]; apply Rmult_le_compat; lra).
+    set (m1 := Rmax (Rabs e1) (Rabs f1)) in *. set (m2 := Rmax (Rabs e2) (Rabs f2)) in *.
+    set (m3 := Rmax (Rabs e3) (Rabs f3)) in *.
+    assert (S * ((m1 + m2 + m3) * (m1 + m2 + m3)) <= S * (E * E)) by (apply Rmult_le_compat_l; [assumption|];
+      apply Rmult_le_compat; lra).
     lra. }
   assert (G0 : 0 <= E * (E * S)) by (repeat apply Rmult_le_pos; assumption).
-  eapply Rle_trans; [exact Q|]. unfold PLANE_ERROR in He. set (T := size _) in *. set (G := E * (E * S)) in *. clearbody T G.
+  eapply Rle_trans; [exact Q|]. unfold PLANE_ERROR in He. set (T := size _) in *. set (G := E * (E * S)) in *.
+  clearbody T G.
   rewrite u_val in *. lra.
 Qed.
 End Height.

@@ -36,7 +36,8 @@ Ltac terms := unfold tsum, tu, tv, tw, tvolume, terror, tsize, tmost, from, tdot
 Definition vertex x1 x2 x3 := Rabs (x1 - o1) <= m1 /\ Rabs (x2 - o2) <= m2 /\ Rabs (x3 - o3) <= m3.
 Lemma most_le : forall x y z, x <= Rmax x (Rmax y z) /\ y <= Rmax x (Rmax y z) /\ z <= Rmax x (Rmax y z).
 Proof.
-  intros. pose proof (Rmax_l x (Rmax y z)). pose proof (Rmax_r x (Rmax y z)). pose proof (Rmax_l y z). pose proof (Rmax_r y z). lra.
+  intros. pose proof (Rmax_l x (Rmax y z)). pose proof (Rmax_r x (Rmax y z)). pose proof (Rmax_l y z).
+  pose proof (Rmax_r y z). lra.
 Qed.
 Lemma vertices : vertex a1 a2 a3 /\ vertex b1 b2 b3 /\ vertex c1 c2 c3.
 Proof.
@@ -55,7 +56,8 @@ Proof.
   destruct range as [[H1 H2] H3]. unfold m1, m2, m3, tmost, from in *. cbn [exact bounded] in *.
   repeat split; repeat apply Rmax_lub; tauto.
 Qed.
-Lemma volume_bounded : forall x1 x2 x3 y1 y2 y3, vertex x1 x2 x3 -> vertex y1 y2 y3 -> bounded (tvolume x1 x2 x3 y1 y2 y3).
+Lemma volume_bounded : forall x1 x2 x3 y1 y2 y3, vertex x1 x2 x3 -> vertex y1 y2 y3 -> bounded (tvolume x1 x2 x3 y1 y2
+  y3).
 Proof.
   intros x1 x2 x3 y1 y2 y3 (A & B & C) (A' & B' & C'). destruct tops as (T1 & T2 & T3). terms. cbn [bounded].
   repeat split; lra.
@@ -74,8 +76,10 @@ Proof.
   assert (Y1 : 0 <= Rabs (y1 - o1) <= m1) by (split; [apply Rabs_pos | assumption]).
   assert (Y2 : 0 <= Rabs (y2 - o2) <= m2) by (split; [apply Rabs_pos | assumption]).
   assert (Y3 : 0 <= Rabs (y3 - o3) <= m3) by (split; [apply Rabs_pos | assumption]).
-  pose proof (mul3 _ _ _ _ _ _ D2' X3 Y1). pose proof (mul3 _ _ _ _ _ _ D3' X2 Y1). pose proof (mul3 _ _ _ _ _ _ D3' X1 Y2).
-  pose proof (mul3 _ _ _ _ _ _ D1' X3 Y2). pose proof (mul3 _ _ _ _ _ _ D1' X2 Y3). pose proof (mul3 _ _ _ _ _ _ D2' X1 Y3).
+  pose proof (mul3 _ _ _ _ _ _ D2' X3 Y1). pose proof (mul3 _ _ _ _ _ _ D3' X2 Y1).
+  pose proof (mul3 _ _ _ _ _ _ D3' X1 Y2).
+  pose proof (mul3 _ _ _ _ _ _ D1' X3 Y2). pose proof (mul3 _ _ _ _ _ _ D1' X2 Y3).
+  pose proof (mul3 _ _ _ _ _ _ D2' X1 Y3).
   assert (Q : m1 * m2 + m1 * m3 + m2 * m3 <= / 3 * (M * M)).
   { unfold M. pose proof (sq_pos (m1 - m2)). pose proof (sq_pos (m1 - m3)). pose proof (sq_pos (m2 - m3)). lra. }
   assert (reach * (m1 * m2 + m1 * m3 + m2 * m3) <= reach * (/ 3 * (M * M))) by (apply Rmult_le_compat_l; lra). lra.
@@ -87,7 +91,8 @@ Lemma error_low : forall scale e, Rabs (scale - VOLUME_ERROR * reach) <= u * Rab
 Proof.
   intros scale e Hs He. pose proof (bp_pos (-100)). destruct positive as (P1 & P2 & P3).
   assert (C : Rabs (VOLUME_ERROR * reach) = 32 * (u * u) * reach).
-  { rewrite Rabs_pos_eq; [unfold VOLUME_ERROR; ring|]. apply Rmult_le_pos; [unfold VOLUME_ERROR; rewrite u_val; lra | lra]. }
+  { rewrite Rabs_pos_eq; [unfold VOLUME_ERROR; ring|]. apply Rmult_le_pos; [unfold VOLUME_ERROR; rewrite u_val;
+    lra | lra]. }
   rewrite C in Hs. replace (VOLUME_ERROR * reach) with (32 * (u * u) * reach) in Hs by (unfold VOLUME_ERROR; ring).
   assert (T : bp (-1075) <= u * (32 * (u * u) * reach)).
   { apply Rle_trans with (u * (u * u * bp (-100))); [unfold u; rewrite <- !bp_add; apply bp_le; lia|].
@@ -107,13 +112,17 @@ Proof.
   assert (LT : bp (low (terror scale)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
   assert (V : exact (terror scale) = scale * (M * M) + UNDERFLOW /\ size (terror scale) = scale * (M * M) + UNDERFLOW).
-  { unfold terror. cbn [exact size]. rewrite (Rabs_pos_eq UNDERFLOW), (Rabs_pos_eq scale) by lra. unfold tsize, M, m1, m2, m3. cbn [exact size tmost from].
+  { unfold terror. cbn [exact size]. rewrite (Rabs_pos_eq UNDERFLOW), (Rabs_pos_eq scale) by lra.
+  unfold tsize, M, m1, m2, m3. cbn [exact size tmost from].
     split; ring. }
   destruct V as [V1 V2]. rewrite V1, V2 in Q. 
-  assert (K : (1 - 2 * u) * (32 * (u * u) * reach) * (M * M) <= scale * (M * M)) by (apply Rmult_le_compat_r; [apply sq_pos | assumption]).
-  replace ((1 - 2 * u) * (32 * (u * u) * reach) * (M * M)) with ((1 - 2 * u) * (32 * (u * u) * (reach * (M * M)))) in K by ring.
+  assert (K : (1 - 2 * u) * (32 * (u * u) * reach) * (M * M) <= scale * (M * M)) by (apply Rmult_le_compat_r;
+    [apply sq_pos | assumption]).
+  replace ((1 - 2 * u) * (32 * (u * u) * reach) * (M * M)) with ((1 - 2 * u) * (32 * (u * u) * (reach * (M * M)))) in
+    K by ring.
   assert (G0 : 0 <= reach * (M * M)) by (apply Rmult_le_pos; [lra | apply sq_pos]).
-  set (G := reach * (M * M)) in *. set (H' := scale * (M * M)) in *. clearbody G H'. apply Rabs_le_inv in Q. rewrite u_val in *. lra.
+  set (G := reach * (M * M)) in *. set (H' := scale * (M * M)) in *. clearbody G H'. apply Rabs_le_inv in Q.
+  rewrite u_val in *. lra.
 Qed.
 
 Theorem volume_error : forall x1 x2 x3 y1 y2 y3 z scale e, vertex x1 x2 x3 -> vertex y1 y2 y3 ->
@@ -122,12 +131,15 @@ Theorem volume_error : forall x1 x2 x3 y1 y2 y3 z scale e, vertex x1 x2 x3 -> ve
   Rabs (z - exact (tvolume x1 x2 x3 y1 y2 y3)) <= (1 - 2 * u) * e.
 Proof.
   intros x1 x2 x3 y1 y2 y3 z scale e HX HY Hz Hs He. pose proof (error_low scale e Hs He) as L.
-  pose proof (twice_error_at _ _ 36 (low2 (tvolume x1 x2 x3 y1 y2 y3)) Hz (volume_bounded _ _ _ _ _ _ HX HY) eq_refl eq_refl ltac:(lia)) as P.
+  pose proof (twice_error_at _ _ 36 (low2 (tvolume x1 x2 x3 y1 y2 y3)) Hz (volume_bounded _ _ _ _ _ _ HX HY) eq_refl
+    eq_refl ltac:(lia)) as P.
   pose proof (volume_size _ _ _ _ _ _ HX HY) as S. pose proof (bp_pos (-100)).
-  assert (LT : bp (low2 (tvolume x1 x2 x3 y1 y2 y3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (LT : bp (low2 (tvolume x1 x2 x3 y1 y2 y3)) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute;
+    discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
   assert (G0 : 0 <= reach * (M * M)) by (apply Rmult_le_pos; [lra | apply sq_pos]).
-  eapply Rle_trans; [exact P|]. set (T := size _) in *. set (G := reach * (M * M)) in *. clearbody G T. rewrite u_val in *. lra.
+  eapply Rle_trans; [exact P|]. set (T := size _) in *. set (G := reach * (M * M)) in *. clearbody G T.
+  rewrite u_val in *. lra.
 Qed.
 
 (* A volume is off by at most 32 u^2 D M^2 + 2^-500 as computed: the sign of its high part is certain beyond. *)
@@ -147,7 +159,8 @@ Proof.
   intros scale e h l Hs He Hd' Hz. apply high_sign with (l := l); auto. pose proof (error_low scale e Hs He) as L.
   destruct vertices as (A & B & C).
   assert (BS : bounded tsum).
-  { exact (conj (conj (volume_bounded _ _ _ _ _ _ B C) (volume_bounded _ _ _ _ _ _ A C)) (volume_bounded _ _ _ _ _ _ A B)). }
+  { exact (conj (conj (volume_bounded _ _ _ _ _ _ B C) (volume_bounded _ _ _ _ _ _ A C)) (volume_bounded _ _ _ _ _ _ A
+    B)). }
   pose proof (twice_error_at tsum _ 48 (low2 tsum) Hz BS eq_refl eq_refl ltac:(lia)) as P.
   pose proof (volume_size _ _ _ _ _ _ B C) as S1. pose proof (volume_size _ _ _ _ _ _ A C) as S2.
   pose proof (volume_size _ _ _ _ _ _ A B) as S3. fold tu in S1. fold tv in S2. fold tw in S3.
@@ -155,7 +168,8 @@ Proof.
   assert (LT : bp (low2 tsum) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
   assert (G0 : 0 <= reach * (M * M)) by (apply Rmult_le_pos; [lra | apply sq_pos]).
-  eapply Rle_trans; [exact P|]. unfold SUM_FACTOR. set (T := size tsum) in *. set (G := reach * (M * M)) in *. clearbody G T. rewrite u_val in *. lra.
+  eapply Rle_trans; [exact P|]. unfold SUM_FACTOR. set (T := size tsum) in *. set (G := reach * (M * M)) in *.
+  clearbody G T. rewrite u_val in *. lra.
 Qed.
 (* What underflows in them is below a part of 10^12 of UNDERFLOW. *)
 Theorem UNDERFLOW_holds : forall x1 x2 x3 y1 y2 y3,

@@ -28,10 +28,12 @@ Theorem twice_mul : forall a b xh xl yh yl e, dd xh xl -> dd yh yl -> F e ->
   twice (Mul a b) (RN (p + w) + fast_two_sum_error p w).
 Proof.
   intros. eapply CMul; eauto. destruct (product_any xh xl yh yl e H H0 H1 H2) as [_ E]. fold p w in E.
-  eapply Rle_trans; [exact E|]. pose proof (g_units 9) as G. replace (INR 9) with PRODUCT in G by (unfold PRODUCT; simpl; lra).
+  eapply Rle_trans; [exact E|]. pose proof (g_units 9) as G. replace (INR 9) with PRODUCT in G by (unfold PRODUCT;
+    simpl; lra).
   pose proof (Rabs_pos ((xh + xl) * (yh + yl))). nra.
 Qed.
-Theorem twice_product : forall x y q e, Rabs (RN (x * y) + e - x * y) <= 4 * bp (-1074) -> twice (XX x y q) (RN (x * y) + e).
+Theorem twice_product : forall x y q e, Rabs (RN (x * y) + e - x * y) <= 4 * bp (-1074) -> twice (XX x y q) (RN (x *
+  y) + e).
 Proof.
   intros. apply CP. eapply Rle_trans; [exact H|]. change (-1070)%Z with (4 + -1074)%Z. rewrite bp_add. simpl (bp 4).
   pose proof (bp_pos (-1074)). lra.
@@ -43,7 +45,8 @@ Proof.
 Qed.
 
 (* The error of a term, with its numbers evaluated. *)
-Lemma twice_error_at : forall t z k p, twice t z -> bounded t -> Z.of_nat (count2 t) = k -> low2 t = p -> (k <= 100)%Z ->
+Lemma twice_error_at : forall t z k p, twice t z -> bounded t -> Z.of_nat (count2 t) = k -> low2 t = p -> (k <= 100)%Z
+  ->
   Rabs (z - exact t) <= (IZR k + / 1000) * (u * u) * size t + bp p.
 Proof.
   intros t z k p H B K L M. subst k p. eapply Rle_trans.
@@ -52,10 +55,12 @@ Proof.
     rewrite <- INR_IZR_INZ. assert (N : (count2 t <= 100)%nat) by lia. apply le_INR in N.
     replace (INR 100) with 100 in N by (simpl; lra). pose proof (pos_INR (count2 t)).
     eapply Rle_trans; [apply g_le; try apply uu_small; rewrite u_val; nra|].
-    set (n := INR (count2 t)) in *. assert (n * (u * u) * (n * (u * u)) <= / 1000 * (u * u)) by (rewrite u_val; nra). lra.
+    set (n := INR (count2 t)) in *. assert (n * (u * u) * (n * (u * u)) <= / 1000 * (u * u)) by (rewrite u_val; nra).
+    lra.
 Qed.
 (* The high part of a value against a bound. *)
-Lemma high_sign : forall h l x e, dd h l -> Rabs (h + l - x) <= (1 - 2 * u) * e -> (h > e -> 0 < x) /\ (h < - e -> x < 0).
+Lemma high_sign : forall h l x e, dd h l -> Rabs (h + l - x) <= (1 - 2 * u) * e -> (h > e -> 0 < x) /\ (h < - e -> x <
+  0).
 Proof.
   intros h l x e H B. pose proof (dd_low _ _ H) as L. apply Rabs_le_inv in B.
   split; intro G; [rewrite (Rabs_pos_eq h) in L | rewrite (Rabs_left h) in L]; try (apply Rabs_le_inv in L);

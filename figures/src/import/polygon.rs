@@ -441,6 +441,7 @@ fn are_on_a_line(corners: &[DVec3]) -> bool {
 /// Each product in the determinant is off by at most `3.01 u` of itself, and by what underflows; the last subtraction
 /// has the sign of its exact operands' difference.
 fn orientation(p: PlanePoint, q: PlanePoint, r: PlanePoint) -> Ordering {
+    // Modelled in docs/proofs/Polygon.v.
     let left = (q[0] - p[0]) * (r[1] - p[1]);
     let right = (q[1] - p[1]) * (r[0] - p[0]);
     let error = 4.0 * U * (left.abs() + right.abs()) + f64::MIN_POSITIVE;

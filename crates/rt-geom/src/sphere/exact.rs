@@ -186,6 +186,7 @@ fn double_double_roots_kernel<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> Op
     }
     let w = difference::<DoubleDouble<FMA>>(o, c);
     let d = d.to_array().map(DoubleDouble::<FMA>::new);
+    // Modelled in docs/proofs/SphereExact.v: tx, tsquare, treach.
     let x = cross(&w, &d);
     let x_square = dot(&x, &x);
     let a = dot(&d, &d);

@@ -22,6 +22,7 @@ const LARGEST: f64 = power_of_two(600);
 const ERROR: f64 = 17.0 * U;
 
 /// The filter: decides in plain doubles whether the line crosses the surface, where that is certain.
+// Modelled in docs/proofs/Sphere.v: tx, tdelta, tsquares, terror, tb, tc.
 #[inline(always)]
 pub(super) fn filter<const FMA: bool>(sphere: &Sphere, ray: &Ray) -> FilterVerdict<SphereCrossing> {
     let d = ray.direction();

@@ -165,6 +165,7 @@ impl Sphere {
     #[must_use]
     pub fn side(&self, point: impl Into<DVec3>) -> Side {
         let point = point.into();
+        // Modelled in docs/proofs/Sphere.v: tc, tside.
         let w = point - self.center;
         let (square, radius_square) = (w.length_squared(), self.radius * self.radius);
         let excess = square - radius_square;

@@ -39,6 +39,7 @@ fn norm(v: DVec3) -> f64 {
 #[inline(always)]
 pub(super) fn estimate(hit: &HitPoint) -> Estimate {
     let (ray, t) = (hit.ray, hit.t);
+    // Modelled in docs/proofs/SurfaceFilter.v: at_t, tn.
     let point = ray.at(t);
     // A subnormal t is off by half the least double, as one that is nearly normal.
     let way = (t.abs() + f64::MIN_POSITIVE) * norm(ray.direction());

@@ -88,6 +88,7 @@ pub(super) fn crosses(triangle: &Triangle, ray: &Ray) -> bool {
 /// The sign of `d . (b - a) x (c - a)`: `Less` where the ray comes from the side that the normal leads to.
 pub(crate) fn slope_sign(triangle: &Triangle, ray: &Ray) -> Ordering {
     let [a, b, c] = triangle.vertices;
+    // Modelled in docs/proofs/Triangle.v: tslope, tleans.
     let slope = ray.direction().cross(b - a).dot(c - a);
     // As the filter's `sum`; false for NaN.
     if triangle.edge < FARTHEST && slope.abs() > (18.0 * U * triangle.edge) * triangle.edge * ray.reach() {
@@ -222,6 +223,7 @@ fn double_double_signs(triangle: &Triangle, ray: &Ray) -> Option<[Ordering; 4]> 
     let most = |i: usize| larger(a[i].high().abs(), larger(b[i].high().abs(), c[i].high().abs()));
     let size = most(0) + most(1) + most(2);
     let error = 32.0 * U * U * ray.reach() * size * size + UNDERFLOW;
+    // Modelled in docs/proofs/TriangleExact.v: tu, tv, tw, tsum, terror.
     let beside_a = cross(&d, &a);
     let (u, v, w) = (dot(&cross(&d, &b), &c), -dot(&beside_a, &c), dot(&beside_a, &b));
     // False for NaN.

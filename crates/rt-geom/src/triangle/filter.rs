@@ -21,6 +21,7 @@ const ERROR: f64 = 18.0 * U;
 /// Source: T. Möller, B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997; the bounds are ours.
 #[inline(always)]
 pub(super) fn filter<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> FilterVerdict<TriangleCrossing> {
+    // Modelled in docs/proofs/Triangle.v: tp1, tsum, tv, tq1, tw, theight, terror.
     let [a, b, c] = triangle.vertices;
     let (e, f, s) = (b - a, c - a, ray.origin() - a);
     let edge = triangle.edge;

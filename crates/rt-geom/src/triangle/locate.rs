@@ -136,6 +136,7 @@ fn sizes(point: DVec3, triangle: &Triangle) -> (f64, f64) {
 /// The signs of the turns around the vertices' opposite edges, if plain doubles are sure of all.
 fn filtered_signs(point: DVec3, triangle: &Triangle) -> Option<[Ordering; 3]> {
     let [a, b, c] = triangle.vertices();
+    // Modelled in docs/proofs/Locate.v: tn, tturn, terror.
     let n = (b - a).cross(c - a);
     let turn = |from: DVec3, to: DVec3| n.dot((to - from).cross(point - from));
     let (edge, far) = sizes(point, triangle);
@@ -326,6 +327,7 @@ fn sized_weights<const LIMBS: usize>(point: DVec3, triangle: &Triangle) -> [f64;
 /// The sign of the volume that the point spans with the triangle, compared with zero.
 fn coplanar(point: DVec3, triangle: &Triangle) -> bool {
     let [a, b, c] = triangle.vertices();
+    // Modelled in docs/proofs/Locate.v: tvolume, tvolume_error.
     let volume = (b - a).cross(c - a).dot(point - a);
     let (edge, far) = sizes(point, triangle);
     // Eight roundings per term, six terms.

@@ -69,6 +69,7 @@ pub fn dot_with_error(a: DVec3, b: DVec3) -> (f64, f64) {
 }
 
 /// The rounded sum of the terms, and `error` of the sum of their magnitudes with what may underflow.
+// Modelled in docs/proofs/Dot.v: sum3, sum_with_error.
 #[inline(always)]
 fn sum_with_error(terms: DVec3, error: f64) -> (f64, f64) {
     let size = (terms.x.abs() + terms.y.abs()) + terms.z.abs();

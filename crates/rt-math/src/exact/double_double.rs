@@ -118,6 +118,7 @@ impl<const FMA: bool> Add for DoubleDouble<FMA> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
+        // Modelled in docs/proofs/DoubleDouble.v, as the other operations are: add_high, add_low.
         let (sum, sum_error) = two_sum(self.high, other.high);
         let (tail, tail_error) = two_sum(self.low, other.low);
         let (sum, rest) = fast_two_sum(sum, sum_error + tail);

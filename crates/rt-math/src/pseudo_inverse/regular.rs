@@ -71,6 +71,7 @@ fn parts<const FMA: bool, const CANCELS: bool>(m: &[f64; 9]) -> Option<(Adjugate
 /// The determinant by the first row: `s + low`, within `bound`.
 #[inline(always)]
 pub(super) fn determinant<const FMA: bool>(m: &[f64; 9], Adjugate { h, l, b }: &Adjugate) -> (f64, f64, f64) {
+    // Modelled in docs/proofs/Determinant.v, by the same letters.
     let a = [m[0], m[3], m[6]];
     let [(p0, w0), (p1, w1), (p2, w2)] = [0, 1, 2].map(|k| two_prod::<FMA>(a[k], h[k]));
     let v = [a[0] * l[0], a[1] * l[1], a[2] * l[2]];
