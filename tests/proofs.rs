@@ -13,6 +13,7 @@ use std::str::Chars;
 type File = (&'static str, &'static [(&'static str, &'static str, &'static str, &'static str)]);
 
 const FILES: &[File] = &[
+    ("Candidates", &[("CANDIDATE", "rt-geom/src/sphere/finish.rs", "error: ((", " * self.error) * self.inverse_a)")]),
     (
         "Determinant",
         &[
