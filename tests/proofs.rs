@@ -76,6 +76,7 @@ const FILES: &[File] = &[
             ("SURFACE_LIMBS", "rt-geom/src/surface/exact.rs", "type Number = Dyadic<", ">;"),
             ("SURFACE_SIDE_LIMBS", "rt-geom/src/surface/exact.rs", "type SideNumber = Dyadic<", ">;"),
             ("SERIES_LIMBS", "rt-geom/src/crossings.rs", "type SeriesNumber = Dyadic<", ">;"),
+            ("CROSSING_LIMBS", "rt-geom/src/crossings.rs", "type Number = Dyadic<", ">;"),
             ("WINDOW_SPARE", "rt-math/src/exact/fixed.rs", "const BITS: i32 = 64 * LIMBS as i32 - ", ";"),
             ("MOST_LIMBS", "rt-math/src/exact/fixed.rs", "pub const MOST_LIMBS: usize = ", ";"),
             ("LONG_LIMBS", "rt-math/src/exact/fixed.rs", "type Long = Dyadic<", ">;"),

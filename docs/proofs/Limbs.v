@@ -38,6 +38,7 @@ Definition SURFACE_LIMBS := 200%Z.
 Definition SURFACE_SIDE_LIMBS := 268%Z.
 (* rt-geom, crossings.rs *)
 Definition SERIES_LIMBS := 140%Z.
+Definition CROSSING_LIMBS := 336%Z.
 (* rt-math, exact/fixed.rs: a number of N limbs has at most 64 N - 3 bits; operands of a quotient or a root, and the
    numbers that decide it *)
 Definition WINDOW_SPARE := 3%Z.
@@ -237,6 +238,17 @@ Proof. vm_compute. split; discriminate. Qed.
 Theorem SERIES_LIMBS_holds : room (Plus (Plus (Plus sphere_delta sphere_delta) sphere_delta) sphere_delta) <=
   SERIES_LIMBS.
 Proof. vm_compute. discriminate. Qed.
+
+(* Two crossings: a sphere and a triangle, x^2 against delta s^2; two spheres, with the same divisor; two triangles. *)
+Definition slope := dot3 (cross2 difference difference) double.
+Definition height := dot3 (cross2 difference difference) difference.
+Theorem CROSSING_LIMBS_holds :
+  (let x := Plus (Times sphere_b slope) (Times height sphere_a) in
+    room (Plus (Times x x) (Times sphere_delta (Times slope slope))) <= CROSSING_LIMBS) /\
+  (let x := Plus sphere_b sphere_b in let rest := Plus (Plus (Times x x) sphere_delta) sphere_delta in
+    room (Times rest rest) <= CROSSING_LIMBS /\ room (Times sphere_delta sphere_delta) <= CROSSING_LIMBS) /\
+  room (Times height slope) <= CROSSING_LIMBS.
+Proof. vm_compute. repeat split; discriminate. Qed.
 
 (* rt-math, exact/fixed.rs: sums of six products of k >= 2 differences keep a bit for the sign in k N limbs. *)
 Theorem WINDOW_SPARE_holds : forall n k, 1 <= n -> 2 <= k ->
