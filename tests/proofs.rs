@@ -113,6 +113,7 @@ const FILES: &[File] = &[
             ("D_FLOOR", "rt-math/src/quadratic.rs", "const D_FLOOR: f64 = ", ";"),
         ],
     ),
+    ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     (
         "Sphere",

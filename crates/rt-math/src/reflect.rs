@@ -77,6 +77,7 @@ fn all_equal(lower: &[f64; 3], upper: &[f64; 3]) -> bool {
 /// last value says so: the vectors are in the range of double-double.
 #[inline(always)]
 fn bounds<const FMA: bool>(incident: DVec3, normal: DVec3) -> ([f64; 3], [f64; 3], bool) {
+    // Modelled in docs/proofs/Reflect.v, by the same letters.
     let (v, n) = (incident.to_array(), normal.to_array());
     let [(vn, vn_low, size), (nn, nn_low, _)] = [dot_and_size::<FMA>(v, n), dot_and_size::<FMA>(n, n)];
     // NaN and infinity fail these comparisons
