@@ -169,6 +169,14 @@ const FILES: &[File] = &[
         ],
     ),
     ("Twice", &[]),
+    (
+        "Weights",
+        &[
+            ("WEIGHT_FACTOR", "rt-geom/src/triangle/locate.rs", "let error = ", " * (turn_error"),
+            ("DIVISION_ERROR", "rt-geom/src/triangle/locate.rs", "error + ", " * size + UNDERFLOW_WEIGHT"),
+            ("UNDERFLOW_WEIGHT", "rt-geom/src/triangle/locate.rs", "const UNDERFLOW_WEIGHT: f64 = ", ";"),
+        ],
+    ),
 ];
 
 #[test]
