@@ -257,7 +257,7 @@ pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<Format>) -> Result
 fn check_memory(channels: u64, width: u32, rows: usize, maxval: u16, format: Format) -> Result<(), Failure> {
     let samples = channels * u64::from(width) * rows as u64;
     // It is drawn with two bytes a sample; where one is enough, they are copied then.
-    let (held, copy) = if maxval <= 255 { (samples, samples) } else { (2 * samples, 0) };
+    let (held, copy) = if maxval <= 255 && channels == 3 { (samples, samples) } else { (2 * samples, 0) };
     let bytes = (2 * samples + copy).max(held + format.memory_to_write(samples, maxval));
     let what = format!("{width} x {rows} pixels");
     memory::check(bytes, &what, "draw a smaller picture (--size) or bands of it (--tile)")

@@ -19,6 +19,24 @@ pub enum Picture {
     Transparent(png::Rgba),
 }
 
+impl Picture {
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        match self {
+            Self::Opaque(pixmap) => (pixmap.width(), pixmap.height()),
+            Self::Transparent(picture) => (picture.width, picture.height),
+        }
+    }
+
+    /// The largest sample.
+    pub fn maxval(&self) -> u16 {
+        match self {
+            Self::Opaque(pixmap) => pixmap.maxval(),
+            Self::Transparent(picture) => picture.maxval,
+        }
+    }
+}
+
 /// Why a transparent picture is not written as PPM.
 pub(crate) const NO_ALPHA: &str = "a picture without a background is a PNG; PPM has no transparency";
 

@@ -105,13 +105,14 @@ impl Label {
 struct TileFile {
     path: PathBuf,
     label: Label,
-    maxval: u16,
-    /// RGB, or RGBA.
-    samples: Vec<u16>,
-    transparent: bool,
+    picture: Picture,
 }
 
 impl TileFile {
+    fn is_transparent(&self) -> bool {
+        matches!(self.picture, Picture::Transparent(_))
+    }
+
     /// What tiles of one picture have in common, each with its name.
     fn common(&self) -> [(&'static str, String); 6] {
         let Label { width, height, samples, scene, version, .. } = &self.label;
@@ -120,8 +121,8 @@ impl TileFile {
             ("size", format!("{width}x{height}")),
             ("samples", samples.to_string()),
             ("scene", format!("{scene:016x}")),
-            ("maxval", self.maxval.to_string()),
-            ("transparency", if self.transparent { "some" } else { "none" }.to_owned()),
+            ("maxval", self.picture.maxval().to_string()),
+            ("transparency", if self.is_transparent() { "some" } else { "none" }.to_owned()),
         ]
     }
 }
@@ -170,8 +171,8 @@ pub fn merge(paths: &[PathBuf]) -> Result<Picture, MergeError> {
             return Err(Obstacle::Stranger { path, first, what, found, expected }.into());
         }
     }
-    let (width, height, maxval) = (first.label.width, first.label.height, first.maxval);
-    let transparent = first.transparent;
+    let (width, height, maxval) = (first.label.width, first.label.height, first.picture.maxval());
+    let transparent = first.is_transparent();
     parts.sort_by_key(|part| part.label.rows.start);
     for pair in parts.windows(2) {
         let [first, second] = [&pair[0], &pair[1]];
@@ -193,7 +194,10 @@ pub fn merge(paths: &[PathBuf]) -> Result<Picture, MergeError> {
         return Err(Obstacle::Memory { megabytes: (2 * count).div_ceil(1_000_000), width, height }.into());
     }
     for part in parts {
-        samples.extend(part.samples);
+        match part.picture {
+            Picture::Opaque(pixmap) => samples.extend(pixmap.into_samples()),
+            Picture::Transparent(picture) => samples.extend(picture.samples),
+        }
     }
     let (width, height) = (width as usize, height as usize);
     if transparent {
@@ -208,23 +212,22 @@ fn read(path: &Path) -> Result<TileFile, Obstacle> {
     let file = File::open(path).map_err(|source| Obstacle::Open { path: path.to_owned(), source })?;
     let mut file = BufReader::new(file);
     let start = file.fill_buf().map_err(|source| Obstacle::Open { path: path.to_owned(), source })?;
-    let transparent = start.starts_with(b"\x89PNG");
-    let (width, height, maxval, samples, comments) = if transparent {
+    let (picture, comments) = if start.starts_with(b"\x89PNG") {
         let read = png::read_rgba(file, &Limits::default());
         let (picture, comments) = read.map_err(|source| Obstacle::Png { path: path.to_owned(), source })?;
-        (picture.width, picture.height, picture.maxval, picture.samples, comments)
+        (Picture::Transparent(picture), comments)
     } else {
         let read = ppm::read_with_comments(file, &Limits::default());
         let (pixmap, comments) = read.map_err(|source| Obstacle::Ppm { path: path.to_owned(), source })?;
-        (pixmap.width(), pixmap.height(), pixmap.maxval(), pixmap.into_samples(), comments)
+        (Picture::Opaque(pixmap), comments)
     };
     let refuse = |what| Obstacle::NoTile { path: path.to_owned(), what };
     let label = comments.iter().find_map(|comment| Label::parse(comment));
     let label = label.ok_or_else(|| refuse("no comment says which rows it has"))?;
-    if width != label.width as usize || height != label.rows.len() {
+    if picture.size() != (label.width as usize, label.rows.len()) {
         return Err(refuse("its size is not what its comment says"));
     }
-    Ok(TileFile { path: path.to_owned(), label, maxval, samples, transparent })
+    Ok(TileFile { path: path.to_owned(), label, picture })
 }
 
 #[cfg(test)]

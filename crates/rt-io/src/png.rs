@@ -96,7 +96,7 @@ pub fn write_rgba(picture: &Rgba, comment: Option<&str>, out: &mut (impl Write +
     encode(sizes(*width, *height)?, ColorType::Rgba, depth, &bytes, comment, out)
 }
 
-/// Reads a picture with transparency, and its comments. A PNG without alpha is refused.
+/// Reads a picture with transparency, and its comments. A PNG without alpha is refused, and one that is interlaced.
 ///
 /// # Errors
 /// What `source` or the decoder says, a size beyond the limits, or too little memory.
@@ -104,27 +104,25 @@ pub fn read_rgba(source: impl BufRead + Seek, limits: &Limits) -> io::Result<(Rg
     let mut reader = Decoder::new(source).read_info()?;
     let info = reader.info();
     let (width, height, depth) = (info.width, info.height, info.bit_depth);
-    if info.color_type != ColorType::Rgba {
-        return Err(io::Error::other("a PNG without transparency"));
+    if info.color_type != ColorType::Rgba || info.interlaced {
+        return Err(io::Error::other("expected a PNG with transparency, not interlaced"));
     }
     if u64::from(width) * u64::from(height) > limits.max_pixels {
         return Err(io::Error::other(format!("more than {} pixels", limits.max_pixels)));
     }
-    let size = reader.output_buffer_size().ok_or_else(|| io::Error::other("too large"))?;
-    let mut bytes = Vec::new();
-    bytes.try_reserve_exact(size)?;
-    bytes.resize(size, 0);
-    reader.next_frame(&mut bytes)?;
+    // Row by row, so that a file with a false size takes no more than its rows.
+    let (mut samples, wide) = (Vec::new(), depth == BitDepth::Sixteen);
+    while let Some(row) = reader.next_row()? {
+        let row = row.data();
+        samples.try_reserve(row.len())?;
+        if wide {
+            samples.extend(row.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)));
+        } else {
+            samples.extend(row.iter().map(|&byte| u16::from(byte)));
+        }
+    }
     reader.finish()?;
     let comments = reader.info().uncompressed_latin1_text.iter().map(|chunk| chunk.text.clone()).collect();
-    let mut samples = Vec::new();
-    let wide = depth == BitDepth::Sixteen;
-    samples.try_reserve_exact(if wide { size / 2 } else { size })?;
-    if wide {
-        samples.extend(bytes.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)));
-    } else {
-        samples.extend(bytes.iter().map(|&byte| u16::from(byte)));
-    }
     let maxval = if wide { 65535 } else { 255 };
     Ok((Rgba { width: width as usize, height: height as usize, maxval, samples }, comments))
 }
