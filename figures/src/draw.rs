@@ -170,6 +170,7 @@ fn draw(
     // Load.
     let scene = pool.install(load)?;
     scene.warnings.iter().for_each(|warning| note(&format!("warning: {warning}")));
+    scene.notes.iter().for_each(|told| note(&format!("note: {told}")));
     let (spheres, triangles, transparent) = (scene.spheres.len(), scene.triangles.len(), scene.transparent);
     let (PictureSize { width, height }, samples) = (options.size, options.samples);
     let view = view(&scene, options.size, samples)?;

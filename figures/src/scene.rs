@@ -39,6 +39,8 @@ pub struct Scene {
     pub vertex_colors: Vec<Option<[DVec3; 3]>>,
     /// Warnings for the user; none of them is an error.
     pub warnings: Vec<String>,
+    /// What the user may want to know.
+    pub notes: Vec<String>,
 }
 
 impl Scene {

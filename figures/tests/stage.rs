@@ -190,7 +190,7 @@ fn several_files_are_drawn_each_into_its_own_picture() {
     let output = run(folder.path(), &["render", "a.pdb", "b.xyz", "--size", "8x6", "-o", "new/"], "");
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(names(&path("new")), ["a.png", "b.png"], "{said}");
-    assert!(said.contains("warning: b.xyz: frame 1 is drawn; another one follows in line 4 (--frame)\n"), "{said}");
+    assert!(said.contains("note: b.xyz: frame 1 is drawn; another one follows in line 4 (--frame)\n"), "{said}");
     // From stdin, whatever it is.
     let from_stdin = run(folder.path(), &["render", "-", "--size", "8x6", "-o", "-"], &atom);
     assert_eq!(from_stdin.stdout, fs::read(path("new/a.png")).unwrap());

@@ -75,7 +75,7 @@ pub fn read(mut source: impl BufRead, name: &str, options: Options) -> Result<Sp
         return Err(ImportError::in_line(name, line, problem));
     }
     let Reader { mut found, names, .. } = reader;
-    found.notes.extend(names.note());
+    found.warnings.extend(names.note());
     if waters > 0 && options.colored {
         let atoms = if waters == 1 { "atom of water is" } else { "atoms of water are" };
         found.notes.push(format!("{waters} {atoms} drawn small and pale"));
@@ -211,7 +211,7 @@ mod tests {
         let found = parse(&text, Options { scale: 2.0, ..Options::default() }).unwrap();
         let sphere = |x: f64, radius: f64| Sphere::new(DVec3::new(x, 0.0, -5.0), radius).unwrap();
         assert_eq!(found.spheres, [sphere(2.5, 3.54), sphere(-15.0, 5.24)]);
-        assert!(found.notes.is_empty(), "{:?}", found.notes);
+        assert!(found.notes.is_empty() && found.warnings.is_empty(), "{:?} {:?}", found.notes, found.warnings);
         // Cut off after the coordinates, and with the line ends of another system.
         let short = text.lines().map(|line| format!("{}\r\n", &line[..line.len().min(54)])).collect::<String>();
         let cut = parse(&short, Options { scale: 2.0, ..Options::default() }).unwrap();

@@ -38,7 +38,9 @@ pub struct Spheres {
     pub color_indices: Vec<u32>,
     /// The colours that occur, in order of appearance: each once, unless there are more than 65,536.
     pub colors: Vec<DVec3>,
-    /// Warnings: names that are not symbols, and what follows the frame.
+    /// Names that are not symbols, and what is passed over.
+    pub warnings: Vec<String>,
+    /// Other frames, and what is drawn otherwise than the file says.
     pub notes: Vec<String>,
 }
 
@@ -48,8 +50,9 @@ impl Spheres {
     /// # Errors
     /// More colours than can be numbered; the spheres are not added then.
     pub fn add_to(self, scene: &mut Scene, look: Option<LookIndex>, name: &str) -> Result<(), ImportError> {
-        let Self { spheres, color_indices, colors, notes } = self;
-        scene.warnings.extend(notes.into_iter().map(|note| format!("{name}: {note}")));
+        let Self { spheres, color_indices, colors, warnings, notes } = self;
+        scene.warnings.extend(warnings.into_iter().map(|warning| format!("{name}: {warning}")));
+        scene.notes.extend(notes.into_iter().map(|note| format!("{name}: {note}")));
         let first = scene.colors.len();
         let own = |index: u32| LookIndex::color(first + index as usize);
         let looks: Option<Vec<_>> = color_indices.into_iter().map(|index| look.or_else(|| own(index))).collect();

@@ -125,8 +125,8 @@ fn read_lines(
         }
         blocks.start -= behind;
     }
-    found.notes.extend(names.note());
-    found.notes.extend(blocks.what_follows(*line, options.frame)?);
+    found.warnings.extend(names.note());
+    blocks.what_follows(*line, options.frame, &mut found)?;
     Ok(found)
 }
 
@@ -218,23 +218,31 @@ impl<R: Read> LineBlocks<R> {
     }
 
     /// Says what follows the last atom, if it is more than space; `line` is the next one's number.
-    fn what_follows(&mut self, mut line: usize, frame: u64) -> Result<Option<String>, Broken> {
+    fn what_follows(&mut self, mut line: usize, frame: u64, found: &mut Spheres) -> Result<(), Broken> {
         while !self.is_empty()? {
-            let found = match self.line() {
-                Ok(found) => found.trim_ascii(),
+            let next = match self.line() {
+                Ok(next) => next.trim_ascii(),
                 // A line without an end is something that follows too.
                 Err(Broken::Line(_)) => b"...",
                 Err(failure) => return Err(failure),
             };
-            if !found.is_empty() {
-                return Ok(Some(match text(found).parse::<u64>() {
-                    Ok(_) => format!("frame {frame} is drawn; another one follows in line {line} (--frame)"),
-                    Err(_) => format!("what follows the last atom is passed over, from line {line} on"),
-                }));
+            if !next.is_empty() {
+                match text(next).parse::<u64>() {
+                    Ok(_) => {
+                        found
+                            .notes
+                            .push(format!("frame {frame} is drawn; another one follows in line {line} (--frame)"));
+                    }
+                    Err(_) => {
+                        let warning = format!("what follows the last atom is passed over, from line {line} on");
+                        found.warnings.push(warning);
+                    }
+                }
+                break;
             }
             line += 1;
         }
-        Ok(None)
+        Ok(())
     }
 }
 
@@ -478,11 +486,11 @@ mod tests {
         let radii: Vec<f64> = found.spheres.iter().map(Sphere::radius).collect();
         assert_eq!(radii, [1.5, 1.2, 1.77, 1.2, 0.5, 1.2]);
         let note = r#"names are read by their letters: "OW" as O, "HW1" as H, "C1" as C, "X" as a dummy atom"#;
-        assert_eq!(found.notes, [note]);
+        assert_eq!(found.warnings, [note]);
         // A long list is cut, at the same place however the file is cut into pieces.
         let mut text = "100000\n\n".to_owned();
         (0..100_000).for_each(|k| text += &format!("C{k} 0 0 0 and so on, to make it long\n"));
-        let [note] = &parse(&text, Options::default()).unwrap().notes[..] else { panic!("one note") };
+        let [note] = &parse(&text, Options::default()).unwrap().warnings[..] else { panic!("one note") };
         assert!(note.ends_with(r#""C6" as C, "C7" as C and more"#), "{note}");
     }
 
@@ -500,7 +508,11 @@ mod tests {
 
     #[test]
     fn what_follows_the_first_frame_is_told() {
-        let notes = |text: &str| parse(text, Options::default()).unwrap().notes;
+        let notes = |text: &str| {
+            let found = parse(text, Options::default()).unwrap();
+            assert!(found.notes.is_empty() || found.warnings.is_empty(), "{found:?}");
+            [found.notes, found.warnings].concat()
+        };
         let frame = "1\n\nC 1 2 3\n";
         assert!(notes(&format!("{frame}\n \n")).is_empty());
         assert_eq!(notes(&frame.repeat(3)), ["frame 1 is drawn; another one follows in line 4 (--frame)"]);
