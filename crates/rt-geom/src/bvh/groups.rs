@@ -194,6 +194,10 @@ impl Parts {
         let mut parts = Self::default();
         parts.stay(&large);
         parts.sort_out(group, &mut small, 0);
+        if let ([], [_]) = (&parts.rest[..], &parts.groups[..]) {
+            // The frame of subnormal numbers, which no other magnifies more.
+            parts.rest = parts.groups.remove(0);
+        }
         parts
     }
 
@@ -245,4 +249,28 @@ fn differ(group: &Group, items: &[Item]) -> bool {
         }
         different.len() == CROWD
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_frame_magnifies_stays_together() {
+        let point = |k: u64| Sphere::new([f64::from_bits(k), 0.0, 0.0], 0.0).unwrap();
+        let (trunk, crown) = grow((0..100).map(point).collect(), vec![]);
+        assert_eq!((trunk.regions.len(), crown.is_some()), (1, false));
+        // With a large one there are two groups.
+        let large = Sphere::new([0.0; 3], 1.0).unwrap();
+        let (trunk, crown) = grow((0..100).map(point).chain([large]).collect(), vec![]);
+        assert_eq!((trunk.regions.len(), crown.is_some()), (1, true));
+    }
+
+    /// Copies of a few primitives are no crowd, however small they are: the tree stands for each with one.
+    #[test]
+    fn copies_are_no_crowd() {
+        let ball = |i: u32| Sphere::new([f64::from(i % 8), 0.0, 0.0], 1e-9).unwrap();
+        let (trunk, crown) = grow((0..800).map(ball).collect(), vec![]);
+        assert_eq!((trunk.regions.len(), crown.is_some()), (1, false));
+    }
 }
