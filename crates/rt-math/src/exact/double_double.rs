@@ -18,9 +18,9 @@ use super::error_free::{fast_two_sum, two_diff, two_prod, two_sum};
 /// | `+`, `-` | 6 u² | | `/` | 14 u² |
 /// | `scale` | 0 | | `sqrt` | 6 u² |
 ///
-/// provided that no operand, intermediate or result overflows and that each non-zero one is large enough: products
-/// and dividends at least 2⁻⁹⁰⁰, radicands at least 2⁻⁸⁰⁰, and factors and quotients at most 2⁹⁹⁵. Sums have no lower
-/// limit. `FMA` changes the speed, never the bits.
+/// provided that no operand, intermediate or result overflows and that each non-zero one is large enough: products,
+/// dividends and quotients at least 2⁻⁹⁰⁰, radicands at least 2⁻⁸⁰⁰, and factors and quotients at most 2⁹⁹⁵. Sums have
+/// no lower limit. `FMA` changes the speed, never the bits.
 ///
 /// ```
 /// use rt_math::exact::DoubleDouble;
