@@ -75,7 +75,6 @@ const FILES: &[File] = &[
             ("AREA_LIMBS", "../figures/src/import/polygon.rs", "type AreaInteger = Dyadic<", ">;"),
             ("SURFACE_LIMBS", "rt-geom/src/surface/exact.rs", "type Number = Dyadic<", ">;"),
             ("SURFACE_SIDE_LIMBS", "rt-geom/src/surface/exact.rs", "type SideNumber = Dyadic<", ">;"),
-            ("SERIES_LIMBS", "rt-geom/src/crossings.rs", "type SeriesNumber = Dyadic<", ">;"),
             ("CROSSING_LIMBS", "rt-geom/src/crossings.rs", "type Number = Dyadic<", ">;"),
             ("WINDOW_SPARE", "rt-math/src/exact/fixed.rs", "const BITS: i32 = 64 * LIMBS as i32 - ", ";"),
             ("MOST_LIMBS", "rt-math/src/exact/fixed.rs", "pub const MOST_LIMBS: usize = ", ";"),

@@ -37,8 +37,7 @@ Definition AREA_LIMBS := 68%Z.
 Definition SURFACE_LIMBS := 200%Z.
 Definition SURFACE_SIDE_LIMBS := 268%Z.
 (* rt-geom, crossings.rs *)
-Definition SERIES_LIMBS := 140%Z.
-Definition CROSSING_LIMBS := 336%Z.
+Definition CROSSING_LIMBS := 268%Z.
 (* rt-math, exact/fixed.rs: a number of N limbs has at most 64 N - 3 bits; operands of a quotient or a root, and the
    numbers that decide it *)
 Definition WINDOW_SPARE := 3%Z.
@@ -234,20 +233,25 @@ Theorem SURFACE_SIDE_LIMBS_holds : room (Times rational rational) <= SURFACE_SID
   room (Times (Times (dot3 difference double) (dot3 difference double)) sphere_delta) <= SURFACE_SIDE_LIMBS.
 Proof. vm_compute. split; discriminate. Qed.
 
-(* Coefficients of a(e) r^2 - |w x d(e)|^2: at most four terms like Delta *)
-Theorem SERIES_LIMBS_holds : room (Plus (Plus (Plus sphere_delta sphere_delta) sphere_delta) sphere_delta) <=
-  SERIES_LIMBS.
-Proof. vm_compute. discriminate. Qed.
-
-(* Two crossings: a sphere and a triangle, x^2 against delta s^2; two spheres, with the same divisor; two triangles. *)
+(* Coefficients of series in e: a product has at most four terms, and its sum begins with zero, here a fifth. *)
+Definition sum4 x := Plus (Plus (Plus (Plus x x) x) x) x.
+Definition series_a := sum4 (dot3 double double).
+Definition series_b := dot3 difference double.
+Definition globe_c := Plus (dot3 difference difference) (Times double double).
+(* s^2 F(h/s) = a h^2 + 2 b h s + c s^2, and a h + b s *)
+Definition outside h s := Plus (Plus (Times series_a (Times h h)) (Times (Plus h h) (sum4 (Times series_b s))))
+  (Times globe_c (sum4 (Times s s))).
+Definition beyond h s := Plus (Times series_a h) (sum4 (Times series_b s)).
 Definition slope := dot3 (cross2 difference difference) double.
 Definition height := dot3 (cross2 difference difference) difference.
+(* Two triangles; a sphere and a triangle; two spheres by the plane where their equations agree, and (b1 - b2)^2 against
+   b2^2 - a c2 *)
 Theorem CROSSING_LIMBS_holds :
-  (let x := Plus (Times sphere_b slope) (Times height sphere_a) in
-    room (Plus (Times x x) (Times sphere_delta (Times slope slope))) <= CROSSING_LIMBS) /\
-  (let x := Plus sphere_b sphere_b in let rest := Plus (Plus (Times x x) sphere_delta) sphere_delta in
-    room (Times rest rest) <= CROSSING_LIMBS /\ room (Times sphere_delta sphere_delta) <= CROSSING_LIMBS) /\
-  room (Times height slope) <= CROSSING_LIMBS.
+  room (Times height slope) <= CROSSING_LIMBS /\
+  room (outside height slope) <= CROSSING_LIMBS /\ room (beyond height slope) <= CROSSING_LIMBS /\
+  (let b := Plus series_b series_b in let h := Plus globe_c globe_c in let s := Plus b b in
+    room (outside h s) <= CROSSING_LIMBS /\ room (beyond h s) <= CROSSING_LIMBS /\
+    room (Plus (Plus (sum4 (Times b b)) (sum4 (Times series_b series_b))) (Times series_a globe_c)) <= CROSSING_LIMBS).
 Proof. vm_compute. repeat split; discriminate. Qed.
 
 (* rt-math, exact/fixed.rs: sums of six products of k >= 2 differences keep a bit for the sign in k N limbs. *)
