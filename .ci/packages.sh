@@ -31,8 +31,8 @@ trap 'rm -rf "$outside"' EXIT
 cp Cargo.lock "$outside/"
 printf '[workspace]\nresolver = "3"\nmembers = ["rt-*"]\n[patch.crates-io]\nrt-math.path = "rt-math"\n' > "$outside/Cargo.toml"
 for crate in $crates; do
-    package=$(ls -d "$target/package/$crate"-*/ | tail -n 1)
-    cp -r "$package" "$outside/$crate"
+    mkdir "$outside/$crate"
+    tar -xzf "$(ls -t "$target/package/$crate"-*.crate | head -n 1)" -C "$outside/$crate" --strip-components 1
     for file in LICENSE-MIT LICENSE-APACHE README.md; do
         [ -s "$outside/$crate/$file" ] || { echo "the package $crate lacks $file" >&2; exit 1; }
     done
