@@ -5,6 +5,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# Times do not matter here: compiled in parallel.
+export CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16
+
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 report() { cargo run --release --quiet -p report -- "$@"; }
