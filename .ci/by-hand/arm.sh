@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# The same bytes on other processors: tests and program on 64-bit Arm and on three models of x86-64, emulated by QEMU.
+# Compared with the processor that this runs on: the six figures (8 and 16 bits a sample), the hard scenes (16 bits), and
+# every error of `report --quick`. The tests, in the release profile as the program, compare with exact references; they
+# run on Arm and on the model without FMA. Nothing is compared with stored files. The gate does not run this.
+#
+# Usage: .ci/by-hand/arm.sh [arm] [MODEL OF x86-64 ..] (default: Nehalem Haswell max arm). What is found goes to stdout, and
+# is kept in docs/other-processors.txt. Needs an x86-64 Debian with Rust; packages are installed as root where missing.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+# Minutes that each step may take; one that takes longer has failed.
+install=10 build=40 draw=10 report=45 test=20
+# Tests of these files run besides the unit tests of the three crates.
+files=(pseudo_inverse pseudo_inverse_with_tolerance ray_sphere ray_triangle inside watertight corpus)
+
+[ "$(uname -m)" = x86_64 ] || { echo "pictures are compared with those of an x86-64 processor: none here" >&2; exit 1; }
+target=${CARGO_TARGET_DIR:-target}
+mkdir -p "$target"
+target=$(cd "$target" && pwd)
+work=$(mktemp -d "$target/processors-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+failed=0
+within() { # MINUTES COMMAND ..: fails after that time
+    timeout --kill-after=10 "$1m" "${@:2}"
+}
+judged() { # STEP MINUTES COMMAND ..: runs it, says how it ended, and counts what failed
+    local started=$SECONDS code=0
+    within "${@:2}" >"$work/step.log" 2>&1 || code=$?
+    case $code in
+        0) echo "$1: passed, $((SECONDS - started)) s" ;;
+        124 | 137) echo "$1: NOT DONE after $2 minutes"; failed=$((failed + 1)) ;;
+        *) echo "$1: FAILED"; failed=$((failed + 1)); tail -n 40 "$work/step.log" >&2 ;;
+    esac
+}
+
+if ! dpkg-query -W qemu-user rustc-web libstd-rust-web-dev:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null 2>&1; then
+    [ "$(id -u)" = 0 ] || { echo "run once as root: QEMU and a compiler for Arm are to be installed" >&2; exit 1; }
+    dpkg --add-architecture arm64
+    export DEBIAN_FRONTEND=noninteractive
+    within $install apt-get update -qq
+    within $install apt-get install -y -qq --no-install-recommends qemu-user rustc-web libstd-rust-web-dev:arm64 \
+        gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null
+fi
+
+# What the program finds of a processor, as it asks: proof that an emulated model takes a path of its own.
+cat >"$work/sees.rs" <<'RUST'
+fn main() {
+    #[cfg(target_arch = "x86_64")]
+    let found = [
+        ("sse2", is_x86_feature_detected!("sse2")),
+        ("fma", is_x86_feature_detected!("fma")),
+        ("avx2", is_x86_feature_detected!("avx2")),
+        ("avx512f", is_x86_feature_detected!("avx512f")),
+    ];
+    #[cfg(target_arch = "aarch64")]
+    let found = [("neon", std::arch::is_aarch64_feature_detected!("neon"))];
+    let names: Vec<_> = found.iter().filter(|(_, has)| *has).map(|(name, _)| *name).collect();
+    println!("{}", names.join(" "));
+}
+RUST
+
+pictures() { # FOLDER COMMAND ..: draws with this command for the program
+    mkdir "$1"
+    "${@:2}" all --quiet --size 320x240 --out "$1/8/"
+    "${@:2}" all --quiet --size 320x240 --depth 16 --out "$1/16/"
+    "${@:2}" render --quiet --size 160x120 --depth 16 --out "$1/hard/" figures/scenes/hard/*.toml
+}
+compared() { # NAME "COMMAND BEFORE A PROGRAM" FOLDER OF PROGRAMS: draws and measures there, and compares
+    local drawn="$work/$1"
+    export -f pictures
+    judged "$1, pictures drawn" $draw bash -euc 'pictures "$@"' - "$drawn" $2 "$3/figures"
+    local same=0 differ=0 name
+    for name in $(cd "$work/here" && find . -type f | sort); do
+        if cmp "$work/here/$name" "$drawn/$name" >&2; then same=$((same + 1)); else differ=$((differ + 1)); fi
+    done
+    echo "$1, pictures: $differ of $((same + differ)) differ"
+    failed=$((failed + differ))
+    judged "$1, all errors of the report equal" $report $2 "$3/report" --quick --check "$work/report/report.json"
+}
+tested() { # NAME "COMMAND BEFORE A PROGRAM" COMMAND OF CARGO ..: builds the tests, and runs each file with a limit of its own
+    local what program
+    judged "$1, tests built" $build "${@:3}" --no-run -p rt-math -p rt-geom -p rt-shade -p raycaster --lib \
+        "${files[@]/#/--test=}"
+    sed -nE 's/^ *Executable (.*) \((.*)\)$/\2/p' "$work/step.log" >"$work/programs.txt"
+    [ "$(wc -l <"$work/programs.txt")" = $((3 + ${#files[@]})) ] || { echo "$1: tests are MISSING"; failed=$((failed + 1)); }
+    while read -r program; do
+        what=$(basename "$program")
+        judged "$1, ${what%-*}" $test $2 "$program" </dev/null
+    done <"$work/programs.txt"
+}
+
+echo "Other processors, by .ci/by-hand/arm.sh, $(date -u +%F), commit $(git describe --always --abbrev=12 --dirty --exclude='*')"
+cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+echo "compared with: $cpu, $(rustc --version)"
+echo "emulated by: $(qemu-x86_64 --version | head -n 1)"
+within $build cargo build --release --quiet -p figures -p report
+within 1 rustc -O "$work/sees.rs" -o "$work/sees"
+echo "here: $("$work/sees")"
+pictures "$work/here" "$target/release/figures"
+within $report "$target/release/report" --quick --out "$work/report"
+
+[ $# -gt 0 ] || set -- Nehalem Haswell max arm
+for name in "$@"; do
+    echo ""
+    if [ "$name" = arm ]; then
+        # Debian's compiler comes with a standard library for Arm. QEMU's `max` has all that the standard library knows.
+        arm=aarch64-unknown-linux-gnu linker=aarch64-linux-gnu-gcc emulated="qemu-aarch64 -L /usr/aarch64-linux-gnu"
+        cargo="env RUSTC=/usr/bin/rustc CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=$linker cargo"
+        echo "arm: compiled by $(/usr/bin/rustc --version)"
+        judged "arm, programs built" $build $cargo build --release --target $arm -p figures -p report
+        within 1 /usr/bin/rustc -O --target $arm -C linker=$linker "$work/sees.rs" -o "$work/sees-arm"
+        echo "arm sees: $($emulated "$work/sees-arm")"
+        compared arm "$emulated" "$target/$arm/release"
+        tested arm "$emulated" $cargo test --release --target $arm
+    else
+        emulated="qemu-x86_64 -cpu $name"
+        echo "$name sees: $($emulated "$work/sees" 2>/dev/null)"
+        compared "$name" "$emulated" "$target/release"
+        [ "$name" != Nehalem ] || tested "$name" "$emulated" cargo test --release
+    fi
+done
+
+echo ""
+if [ $failed = 0 ]; then echo "passed: no byte and no error differs"; else echo "FAILED: $failed"; fi
+[ $failed = 0 ]
