@@ -34,13 +34,13 @@ judged() { # STEP MINUTES COMMAND ..: runs it, says how it ended, and counts wha
     esac
 }
 
-if ! dpkg-query -W qemu-user rustc-web libstd-rust-web-dev:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null 2>&1; then
+if ! dpkg-query -W qemu-user rustc-web libstd-rust-web-dev:arm64 libc6:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null 2>&1; then
     [ "$(id -u)" = 0 ] || { echo "run once as root: QEMU and a compiler for Arm are to be installed" >&2; exit 1; }
     dpkg --add-architecture arm64
     export DEBIAN_FRONTEND=noninteractive
     within $install apt-get update -qq
     within $install apt-get install -y -qq --no-install-recommends qemu-user rustc-web libstd-rust-web-dev:arm64 \
-        gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null
+        libc6:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null
 fi
 
 # What the program finds of a processor, as it asks: proof that an emulated model takes a path of its own.
@@ -104,8 +104,9 @@ within $report "$target/release/report" --quick --out "$work/report"
 for name in "$@"; do
     echo ""
     if [ "$name" = arm ]; then
-        # Debian's compiler comes with a standard library for Arm. QEMU's `max` has all that the standard library knows.
-        arm=aarch64-unknown-linux-gnu linker=aarch64-linux-gnu-gcc emulated="qemu-aarch64 -L /usr/aarch64-linux-gnu"
+        # Debian's compiler comes with a standard library for Arm. Without `-L`: the loader of the cross compiler and the C
+        # library of arm64 may be of different releases, and then the start of a thread never ends.
+        arm=aarch64-unknown-linux-gnu linker=aarch64-linux-gnu-gcc emulated=qemu-aarch64
         cargo="env RUSTC=/usr/bin/rustc CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=$linker cargo"
         echo "arm: compiled by $(/usr/bin/rustc --version)"
         judged "arm, programs built" $build $cargo build --release --target $arm -p figures -p report
