@@ -12,7 +12,7 @@ cd "$(dirname "$0")/../.."
 # Minutes that each step may take; one that takes longer has failed.
 install=10 build=40 draw=10 report=45 test=20
 # Tests of these files run besides the unit tests of the three crates.
-files=(pseudo_inverse pseudo_inverse_with_tolerance ray_sphere ray_triangle inside watertight corpus)
+files=(pseudo_inverse pseudo_inverse_with_tolerance ray_sphere ray_triangle inside watertight)
 
 [ "$(uname -m)" = x86_64 ] || { echo "pictures are compared with those of an x86-64 processor: none here" >&2; exit 1; }
 target=${CARGO_TARGET_DIR:-target}
@@ -80,7 +80,7 @@ compared() { # NAME "COMMAND BEFORE A PROGRAM" FOLDER OF PROGRAMS: draws and mea
 }
 tested() { # NAME "COMMAND BEFORE A PROGRAM" COMMAND OF CARGO ..: builds the tests, and runs each file with a limit of its own
     local what program
-    judged "$1, tests built" $build "${@:3}" --no-run -p rt-math -p rt-geom -p rt-shade -p raycaster --lib \
+    judged "$1, tests built" $build "${@:3}" --no-run -p rt-math -p rt-geom -p rt-shade --lib \
         "${files[@]/#/--test=}"
     sed -nE 's/^ *Executable (.*) \((.*)\)$/\2/p' "$work/step.log" >"$work/programs.txt"
     [ "$(wc -l <"$work/programs.txt")" = $((3 + ${#files[@]})) ] || { echo "$1: tests are MISSING"; failed=$((failed + 1)); }
