@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# The same bytes on other processors: tests and program on 64-bit Arm and on three models of x86-64, emulated by QEMU.
-# Compared with the processor that this runs on: the six figures (8 and 16 bits a sample), the hard scenes (16 bits), and
-# the errors of a report with 32 cases a class, 1,000 spheres and pictures of 16 x 12 pixels. The tests, in the release profile as the program, compare with exact references; they
-# run on Arm and on the model without FMA. Nothing is compared with stored files. The gate does not run this.
+# The same bytes on other processors: tests and program on 64-bit Arm and on models of x86-64, emulated by QEMU. Compared
+# with the processor that this runs on: the six figures (8 and 16 bits a sample), the hard scenes (16 bits), and the
+# errors of a report with 32 cases a class, 1,000 spheres and pictures of 16 x 12 pixels. The tests, in the release
+# profile as the program, compare with exact references; they run on Arm and on Nehalem, which has no FMA. Nothing is
+# compared with stored files. The gate does not run this.
 #
-# Usage: .ci/by-hand/arm.sh [arm] [MODEL OF x86-64 ..] (default: Nehalem Haswell max arm). What is found goes to stdout, and
-# is kept in docs/other-processors.txt. Needs an x86-64 Debian with Rust; packages are installed as root where missing.
+# Usage: .ci/by-hand/arm.sh [arm] [MODEL OF x86-64 ..] (default: Nehalem Haswell max arm). What is found goes to stdout,
+# and is kept in docs/other-processors.txt. Needs an x86-64 Debian with Rust; packages are installed where missing, by root.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -34,13 +35,13 @@ judged() { # STEP MINUTES COMMAND ..: runs it, says how it ended, and counts wha
     esac
 }
 
-if ! dpkg-query -W qemu-user rustc-web libstd-rust-web-dev:arm64 libc6:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null 2>&1; then
+packages=(qemu-user rustc-web libstd-rust-web-dev:arm64 libc6:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
+if ! dpkg-query -W "${packages[@]}" >/dev/null 2>&1; then
     [ "$(id -u)" = 0 ] || { echo "run once as root: QEMU and a compiler for Arm are to be installed" >&2; exit 1; }
     dpkg --add-architecture arm64
     export DEBIAN_FRONTEND=noninteractive
     within $install apt-get update -qq
-    within $install apt-get install -y -qq --no-install-recommends qemu-user rustc-web libstd-rust-web-dev:arm64 \
-        libc6:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross >/dev/null
+    within $install apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null
 fi
 
 # What the program finds of a processor, as it asks: proof that an emulated model takes a path of its own.
@@ -66,7 +67,7 @@ pictures() { # FOLDER COMMAND ..: draws with this command for the program
     "${@:2}" all --quiet --size 320x240 --depth 16 --out "$1/16/"
     "${@:2}" render --quiet --size 160x120 --depth 16 --out "$1/hard/" figures/scenes/hard/*.toml
 }
-errors() { # REPORT FILE COMMAND ..: measures with the effort that REPORT says, and writes all errors that are not those of REPORT
+errors() { # REPORT FILE COMMAND ..: measures with the effort of REPORT, and writes all errors that are not those of REPORT
     "${@:3}" --check "$1" 2>&1 | grep -v '^qemu-x86_64: warning' >"$2" || true
 }
 compared() { # NAME "COMMAND BEFORE A PROGRAM" FOLDER OF PROGRAMS: draws and measures there, and compares
