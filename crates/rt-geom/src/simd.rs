@@ -4,7 +4,7 @@
 use fearless_simd::Fallback as Baseline;
 #[cfg(target_feature = "sse2")]
 use fearless_simd::Sse2 as Baseline;
-use fearless_simd::{Level, Simd, f64x4, prelude::*};
+use fearless_simd::{Simd, f64x4, prelude::*};
 use rt_math::exact::two_prod_with;
 
 /// Compiles a kernel for each instruction set that earns its copy, and runs the copy for the processor.
@@ -12,7 +12,7 @@ use rt_math::exact::two_prod_with;
 /// On x86 these are AVX-512, AVX2 (with fused multiply-add) and the baseline, SSE2; elsewhere those of `fearless_simd`.
 /// All give the same bits. There are two forms:
 ///
-/// - `dispatch!(level, simd => expression)` runs an expression with the instructions of a [`Level`], of which every
+/// - `dispatch!(level, simd => expression)` runs an expression with the instructions of a `Level`, of which every
 ///   kernel in the expression takes `simd`. What the expression uses passes through memory.
 /// - `dispatch! { fn name(argument: Type, ..) -> Type = kernel; }` defines a function that calls
 ///   `kernel::<FMA, S>(simd, argument, ..)`. The arguments pass in registers: for kernels of a few nanoseconds, with
@@ -89,7 +89,7 @@ pub(crate) use dispatch;
 #[cfg(target_feature = "sse2")]
 #[inline(always)]
 pub(crate) fn baseline() -> Baseline {
-    Level::baseline().as_sse2().expect("the compiler was told that it is there")
+    fearless_simd::Level::baseline().as_sse2().expect("the compiler was told that it is there")
 }
 
 /// What every processor has for which this is compiled, without run-time checks.
