@@ -18,7 +18,7 @@ use crate::options::{ChangeOptions, Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
 use crate::output::{self, Format as PictureFormat, Target};
 use crate::text::meant;
-use crate::{ask, convert, draw, generate, memory};
+use crate::{ask, convert, draw, generate, memory, stderr};
 
 #[derive(Parser)]
 #[command(
@@ -212,8 +212,27 @@ fn meant_command(text: &str) -> Option<String> {
     long.then(|| meant(text, names.into_iter()).map(str::to_owned)).flatten()
 }
 
+/// What is wrong with the first word if it stands in a command's place and is none. With more words behind it the parser
+/// would speak of those.
+fn slip() -> Option<String> {
+    let mut words = std::env::args_os().skip(1);
+    let (first, _) = (words.next()?, words.next()?);
+    let first = first.to_str().filter(|word| !word.starts_with('-'))?;
+    let mut commands = Arguments::command();
+    commands.build();
+    if commands.find_subcommand(first).is_some() {
+        return None;
+    }
+    let problem = Which::from_str(first).err()?;
+    Some(format!("error: invalid value '{first}' for '[FIGURE]': {problem}\n\nFor more information, try '--help'."))
+}
+
 /// Runs the program with the arguments it was started with.
 pub fn main() -> ExitCode {
+    if let Some(problem) = slip() {
+        stderr::tell_lines(&problem);
+        return ExitCode::from(2);
+    }
     match parsed() {
         Ok(arguments) => exit_code(run(arguments)),
         Err(code) => code,

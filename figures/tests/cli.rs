@@ -461,9 +461,11 @@ fn a_slip_is_answered_with_what_was_meant() {
         ("my file", "render 'my file'"),
         ("rendr", "render"),
     ] {
-        let said = refusal(folder.path(), &[word], "", 2);
         let expected = format!("error: invalid value '{word}' for '[FIGURE]': did you mean `figures {meant}`?\n");
-        assert!(said.starts_with(&expected), "{said}");
+        for more in [&[][..], &["m.pdb"], &["-o", "m.png"]] {
+            let said = refusal(folder.path(), &[&[word], more].concat(), "", 2);
+            assert!(said.starts_with(&expected), "{said}");
+        }
     }
     let help = String::from_utf8(stdout(folder.path(), &["help", "render"])).unwrap();
     assert!(help.contains("--view") && help.contains("figures render molecule.pdb -o molecule.png"), "{help}");
