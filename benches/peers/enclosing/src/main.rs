@@ -95,9 +95,7 @@ fn main() {
             let ours: Vec<Vec<Sphere>> = (0..sets).map(|_| spheres(kind, n, &mut random)).collect();
             let flat: Vec<Vec<f64>> = ours
                 .iter()
-                .map(|set| {
-                    set.iter().flat_map(|s| [s.center().x, s.center().y, s.center().z, s.radius()]).collect()
-                })
+                .map(|set| set.iter().flat_map(|s| [s.center().x, s.center().y, s.center().z, s.radius()]).collect())
                 .collect();
             for (ours, flat) in ours.iter().zip(&flat) {
                 let radius = enclosing_sphere(ours).expect("not empty").sphere.radius();

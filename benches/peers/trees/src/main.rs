@@ -158,8 +158,7 @@ fn run(set: &RaySet, field: &[Built], answers: &[(usize, Answer)], rounds: usize
             if slow || (b.contestant.camera_only && !matches!(set.name, "camera" | "distant")) {
                 continue;
             }
-            let (rays, thin) =
-                if b.contestant.slow { (&thinned, contestants::THIN) } else { (&set.rays, 1) };
+            let (rays, thin) = if b.contestant.slow { (&thinned, contestants::THIN) } else { (&set.rays, 1) };
             let hits = &mut hits[..rays.len()];
             let start = trees::cpu_seconds();
             let count = if set.any {
@@ -200,20 +199,25 @@ fn distant(d: f32) -> Vec<Ray> {
 fn main() {
     let o = options();
     let all = contestants::all();
-    let wanted = |c: &&Contestant| o.only.is_empty() || o.only.iter().any(|w| match w.strip_prefix('=') {
-        Some(exact) => c.name == exact,
-        None => c.name.starts_with(w.as_str()),
-    });
+    let wanted = |c: &&Contestant| {
+        o.only.is_empty()
+            || o.only.iter().any(|w| match w.strip_prefix('=') {
+                Some(exact) => c.name == exact,
+                None => c.name.starts_with(w.as_str()),
+            })
+    };
     let field: Vec<&Contestant> = all.iter().filter(wanted).collect();
     println!("# {}; Rust code compiled with {}", contestants::describe_embree(), features());
-    let sets = vec![
+    let mut sets = vec![
         RaySet { name: "camera", rays: trees::workload::camera_rays(1024), any: false },
         RaySet { name: "random", rays: trees::workload::random_rays(1_000_000), any: false },
         RaySet { name: "occlusion", rays: trees::workload::random_rays(1_000_000), any: true },
     ];
-    let mut sets: Vec<RaySet> = sets.into_iter().chain(o.distant.map(|d| RaySet { name: "distant", rays: distant(d), any: false })).collect();
+    sets.extend(o.distant.map(|d| RaySet { name: "distant", rays: distant(d), any: false }));
     if !o.ratios {
-        println!("scene\tspheres\tset\tcontestant\tMrays/s\tMsph/s\tB/sphere\tpeak_B/sphere\tspread\trays\thits\tsum_t\tchecked\twrong_verdict\twrong_id\tgross_t\tt_median\tt_p99.9\tt_max\tt_abs_max");
+        println!(
+            "scene\tspheres\tset\tcontestant\tMrays/s\tMsph/s\tB/sphere\tpeak_B/sphere\tspread\trays\thits\tsum_t\tchecked\twrong_verdict\twrong_id\tgross_t\tt_median\tt_p99.9\tt_max\tt_abs_max"
+        );
     }
     let mut ratios = Ratios::default();
     for scene in &o.scenes {
@@ -228,11 +232,8 @@ fn main() {
             for set in sets.iter().filter(|set| !set.rays.is_empty()) {
                 let step = (set.rays.len() / o.check.max(1)).max(1);
                 let picked = (0..set.rays.len()).skip(step / 2).step_by(step);
-                let answers: Vec<(usize, Answer)> = if set.any {
-                    Vec::new()
-                } else {
-                    picked.map(|i| (i, reference.closest(&set.rays[i]))).collect()
-                };
+                let answers: Vec<(usize, Answer)> =
+                    if set.any { Vec::new() } else { picked.map(|i| (i, reference.closest(&set.rays[i]))).collect() };
                 let rows = run(set, &built, &answers, o.rounds);
                 if o.ratios {
                     ratios.add(scene, n, set, &built, &rows);
@@ -286,8 +287,15 @@ const RATIOS: [(&str, &str, &[&str]); 5] = [
     ("batch, AVX2", "ours batch avx2", &SINGLE),
 ];
 const SINGLE: [&str; 3] = ["embree high", "embree4", "obvhs cwbvh medium"];
-const ANY_MODE: [&str; 7] =
-    ["embree high", "embree4", "obvhs cwbvh medium", "embree stream 1024", "embree packet16 4x4", "embree4 packet8 4x2", "embree4 packet16 4x4"];
+const ANY_MODE: [&str; 7] = [
+    "embree high",
+    "embree4",
+    "obvhs cwbvh medium",
+    "embree stream 1024",
+    "embree packet16 4x4",
+    "embree4 packet8 4x2",
+    "embree4 packet16 4x4",
+];
 
 /// The table of `--ratios`.
 #[derive(Default)]

@@ -58,9 +58,7 @@ impl<'a> Reference<'a> {
         };
         let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
         let mid = count / 2;
-        part.select_nth_unstable_by(mid, |&a, &b| {
-            spheres[a as usize][axis].total_cmp(&spheres[b as usize][axis])
-        });
+        part.select_nth_unstable_by(mid, |&a, &b| spheres[a as usize][axis].total_cmp(&spheres[b as usize][axis]));
         let child = self.nodes.len();
         let (left, right) = (self.bound(first, mid), self.bound(first + mid, count - mid));
         self.nodes.extend([left, right]);
@@ -93,9 +91,7 @@ impl<'a> Reference<'a> {
 
     pub fn brute_force(&self, ray: &Ray) -> Answer {
         let (o, d) = (ray.origin.map(f64::from), ray.direction.map(f64::from));
-        (0..self.spheres.len()).fold(None, |best, i| {
-            nearer(best, sphere(&self.spheres[i], o, d), i as u32)
-        })
+        (0..self.spheres.len()).fold(None, |best, i| nearer(best, sphere(&self.spheres[i], o, d), i as u32))
     }
 }
 

@@ -106,7 +106,11 @@ pub fn spheres(scene: &str, n: usize) -> Vec<Sphere> {
             let at = |i: usize| (i as f32 + 0.5) * cell - 1.0;
             let place = |i: usize| {
                 let (x, y) = (at(i % side), at(i / side % side));
-                if flat { [x, y, 0.2 * (5.0 * x).sin() * (4.0 * y).cos() - 3.0, 0.5 * cell] } else { [x, y, at(i / side / side) - 3.0, cell / 3.0] }
+                if flat {
+                    [x, y, 0.2 * (5.0 * x).sin() * (4.0 * y).cos() - 3.0, 0.5 * cell]
+                } else {
+                    [x, y, at(i / side / side) - 3.0, cell / 3.0]
+                }
             };
             (0..n).map(place).collect()
         }
@@ -114,7 +118,9 @@ pub fn spheres(scene: &str, n: usize) -> Vec<Sphere> {
             const FAR: f32 = 1e5;
             let mut room = spheres("uniform", n.saturating_sub(5));
             let walls = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]];
-            room.extend(walls.map(|[x, y, z]: [f32; 3]| [x * (FAR + 1.0), y * (FAR + 1.0), z * (FAR + 1.0) - 3.0, FAR]));
+            room.extend(
+                walls.map(|[x, y, z]: [f32; 3]| [x * (FAR + 1.0), y * (FAR + 1.0), z * (FAR + 1.0) - 3.0, FAR]),
+            );
             room
         }
         "stars" => (0..n)
@@ -160,9 +166,8 @@ fn flake(n: usize) -> Vec<Sphere> {
             } else {
                 (0.955_316_618, (k - 6) as f64 * 2.0 * std::f64::consts::FRAC_PI_3 + 0.523_598_776)
             };
-            let d: [f64; 3] = std::array::from_fn(|i| {
-                elev.cos() * (turn.cos() * x[i] + turn.sin() * y[i]) + elev.sin() * z[i]
-            });
+            let d: [f64; 3] =
+                std::array::from_fn(|i| elev.cos() * (turn.cos() * x[i] + turn.sin() * y[i]) + elev.sin() * z[i]);
             let rr = r / 3.0;
             queue.push_back(Node { c: std::array::from_fn(|i| c[i] + (r + rr) * d[i]), r: rr, z: d });
         }
@@ -288,11 +293,17 @@ pub fn mesh(name: &str, n: usize) -> Mesh {
         let (mut corners, mut triangles) = (Vec::new(), Vec::new());
         for block in 0..side * side {
             let (x, y) = ((block % side) as f32 * cell - 1.0, (block / side) as f32 * cell - 1.0);
-            let (wide, deep, high) = (cell * (0.4 + 0.5 * rng.unit()), cell * (0.4 + 0.5 * rng.unit()), 0.3 * rng.unit() * rng.unit());
+            let (wide, deep, high) =
+                (cell * (0.4 + 0.5 * rng.unit()), cell * (0.4 + 0.5 * rng.unit()), 0.3 * rng.unit() * rng.unit());
             let first = corners.len() as u32;
-            corners.extend((0..8).map(|k| [x + wide * (k & 1) as f32, y + deep * (k >> 1 & 1) as f32, high * (k >> 2) as f32 - 3.0]));
+            corners
+                .extend((0..8).map(|k| {
+                    [x + wide * (k & 1) as f32, y + deep * (k >> 1 & 1) as f32, high * (k >> 2) as f32 - 3.0]
+                }));
             let sides = [[4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-            triangles.extend(sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(|k: u32| first + k)));
+            triangles.extend(
+                sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(|k: u32| first + k)),
+            );
         }
         return (corners, triangles);
     }

@@ -6,7 +6,7 @@ use std::any::Any;
 use std::time::Instant;
 
 use glam::DVec3;
-use rt_geom::{Sphere, Bvh};
+use rt_geom::{Bvh, Sphere};
 use trees::contestants::embree;
 use trees::{memory, workload};
 
@@ -14,14 +14,17 @@ use trees::{memory, workload};
 static ALLOCATOR: memory::Counting = memory::Counting;
 
 fn main() {
-    let mut sizes: Vec<usize> = std::env::args().skip(1).map(|n| n.parse::<f64>().expect("a number") as usize).collect();
+    let mut sizes: Vec<usize> =
+        std::env::args().skip(1).map(|n| n.parse::<f64>().expect("a number") as usize).collect();
     if sizes.is_empty() {
         sizes = vec![100_000, 1_000_000, 10_000_000];
     }
     let embree = embree::contestants().into_iter().find(|c| c.name == "embree high").expect("is listed");
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let (one, two) = (pool(1), pool(2));
-    println!("| scene | spheres | Embree, 1 thread, s | ours, 1 thread, s | ours, 2 threads, s | times faster, 1 and 2 | bytes a sphere, ours (peak) | Embree (peak) |");
+    println!(
+        "| scene | spheres | Embree, 1 thread, s | ours, 1 thread, s | ours, 2 threads, s | times faster, 1 and 2 | bytes a sphere, ours (peak) | Embree (peak) |"
+    );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for scene in workload::SCENES {
         for &n in &sizes {

@@ -10,7 +10,8 @@ use trees::{Hit, Tracer, workload};
 
 fn main() {
     println!("# {}", describe_embree());
-    let mut sizes: Vec<usize> = std::env::args().skip(1).map(|n| n.parse::<f64>().expect("a number") as usize).collect();
+    let mut sizes: Vec<usize> =
+        std::env::args().skip(1).map(|n| n.parse::<f64>().expect("a number") as usize).collect();
     if sizes.is_empty() {
         sizes = vec![100_000, 1_000_000];
     }
@@ -32,11 +33,13 @@ fn main() {
                 ("ours single avx2", build(&|| Some(ours::mesh(&mesh, false, Some("avx2"))))),
                 ("ours batch avx2", build(&|| Some(ours::mesh(&mesh, true, Some("avx2"))))),
             ];
-            let field: Vec<_> = field.into_iter().filter_map(|(name, built)| built.map(|(t, s)| (name, t, s))).collect();
+            let field: Vec<_> =
+                field.into_iter().filter_map(|(name, built)| built.map(|(t, s)| (name, t, s))).collect();
             let camera = workload::camera_rays(1024);
             let mut hits = vec![Hit::MISS; camera.len()];
             field.iter().find(|f| f.0 == "ours batch").expect("takes part").1.closest(&camera, &mut hits);
-            let met: Vec<_> = camera.iter().zip(&hits).filter(|(_, h)| h.is_hit()).map(|(r, h)| (*r, f64::from(h.t))).collect();
+            let met: Vec<_> =
+                camera.iter().zip(&hits).filter(|(_, h)| h.is_hit()).map(|(r, h)| (*r, f64::from(h.t))).collect();
             let sets = [
                 ("camera", camera, false),
                 ("random", workload::random_rays(500_000), false),
@@ -66,7 +69,12 @@ fn main() {
                 }
                 let peer = |tiles: bool| {
                     let takes_part = |name: &str| name.contains("robust") && (tiles || !name.contains("packet"));
-                    field.iter().zip(&best).filter(|(f, _)| takes_part(f.0)).map(|(_, s)| *s).fold(f64::INFINITY, f64::min)
+                    field
+                        .iter()
+                        .zip(&best)
+                        .filter(|(f, _)| takes_part(f.0))
+                        .map(|(_, s)| *s)
+                        .fold(f64::INFINITY, f64::min)
                 };
                 for (i, (contestant, _, built)) in field.iter().enumerate().filter(|(i, _)| best[*i].is_finite()) {
                     println!(

@@ -40,7 +40,10 @@ fn errors(folder: &Path) -> std::io::Result<()> {
             rays += 1;
         }
     }
-    println!("from inside\t{rays} rays\tlost: ours {}, Embree 4 robust {}\tnot one crossing: ours {}, Embree 4 {}", lost[0], lost[1], wrong[0], wrong[1]);
+    println!(
+        "from inside\t{rays} rays\tlost: ours {}, Embree 4 robust {}\tnot one crossing: ours {}, Embree 4 {}",
+        lost[0], lost[1], wrong[0], wrong[1]
+    );
     let points: Vec<DVec3> = (triangles.iter().step_by(20))
         .flat_map(|triangle| {
             let [a, b, c] = triangle.vertices();
@@ -50,7 +53,10 @@ fn errors(folder: &Path) -> std::io::Result<()> {
         .collect();
     let row = |point: &DVec3| point.to_array().into_iter().flat_map(f64::to_le_bytes).collect::<Vec<u8>>();
     fs::write(folder.join("near.points"), points.iter().flat_map(row).collect::<Vec<u8>>())?;
-    fs::write(folder.join("near.inside"), points.iter().map(|&p| u8::from(tree.contains(p) != Side::Outside)).collect::<Vec<u8>>())?;
+    fs::write(
+        folder.join("near.inside"),
+        points.iter().map(|&p| u8::from(tree.contains(p) != Side::Outside)).collect::<Vec<u8>>(),
+    )?;
     fs::write(folder.join("near.corners"), bytes(mesh.0.iter().map(|p| p.map(f32::to_le_bytes))))?;
     fs::write(folder.join("near.triangles"), bytes(mesh.1.iter().map(|t| t.map(u32::to_le_bytes))))
 }
@@ -107,7 +113,8 @@ fn main() -> std::io::Result<()> {
         for (question, [ours, batch, theirs]) in [("all hits", [&a, &e, &b]), ("contains", [&c, &f, &d])] {
             let differing = ours.1.iter().zip(&theirs.1).filter(|(a, b)| a != b).count();
             assert_eq!(ours.1, batch.1, "the same answers in batches");
-            let rows = [("ours", ours, 0), ("ours, batch", batch, 0), ("Embree 4, repeated rtcIntersect1", theirs, differing)];
+            let rows =
+                [("ours", ours, 0), ("ours, batch", batch, 0), ("Embree 4, repeated rtcIntersect1", theirs, differing)];
             for (name, answers, differing) in rows {
                 println!(
                     "globe\t{n}\t{question}\t{name}\t{:.3}\t{:.2}\t{:.2}\t{}\t{differing}",

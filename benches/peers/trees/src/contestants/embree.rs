@@ -168,14 +168,23 @@ impl Api {
                 std::mem::transmute::<Handle, Packet3<N>>(found)(valid.as_ptr(), scene, context, rays);
             } else {
                 let arguments = Arguments { flags: COHERENT_4, features: NO_ID, rest: [null(); 4] };
-                std::mem::transmute::<Handle, Packet4<N>>(found)(valid.as_ptr(), scene, rays, (&raw const arguments).cast());
+                std::mem::transmute::<Handle, Packet4<N>>(found)(
+                    valid.as_ptr(),
+                    scene,
+                    rays,
+                    (&raw const arguments).cast(),
+                );
             }
         }
     }
 }
 
 extern "C" fn count_bytes(_: *mut c_void, bytes: isize, _post: bool) -> bool {
-    if bytes >= 0 { memory::grow(bytes as usize) } else { memory::shrink(bytes.unsigned_abs()) }
+    if bytes >= 0 {
+        memory::grow(bytes as usize)
+    } else {
+        memory::shrink(bytes.unsigned_abs())
+    }
     true
 }
 
@@ -215,11 +224,7 @@ struct Embree {
 impl Embree {
     fn new(api: &'static Api, spheres: &[Sphere], v: Variant) -> Self {
         let ids = if v.sorted { morton_order(spheres) } else { Vec::new() };
-        let spheres = if v.sorted {
-            ids.iter().map(|&i| spheres[i as usize]).collect()
-        } else {
-            spheres.to_vec()
-        };
+        let spheres = if v.sorted { ids.iter().map(|&i| spheres[i as usize]).collect() } else { spheres.to_vec() };
         let vertices = spheres.into_iter().flatten().collect();
         Self::commit(api, vertices, Vec::new(), ids, v)
     }
@@ -254,12 +259,7 @@ impl Embree {
         }
     }
 
-    fn packets<const N: usize>(
-        &self,
-        rays: &[Ray],
-        hits: &mut [Hit],
-        (w, h): (usize, usize),
-    ) {
+    fn packets<const N: usize>(&self, rays: &[Ray], hits: &mut [Hit], (w, h): (usize, usize)) {
         let side = rays.len().isqrt();
         assert!(side * side == rays.len() && side % w == 0 && side % h == 0 && w * h == N);
         let (call, valid, mut context) = (self.api.packet::<N>(), [-1; N], context(COHERENT));
