@@ -6,10 +6,11 @@
 
 use std::cmp::Ordering;
 
+use fearless_simd::Simd;
 use rt_math::Roots;
 
 use crate::crossings::{self, Pass};
-use crate::ray::{Candidate, PreparedRay, holds};
+use crate::ray::{Candidate, LaneCandidates, PreparedRay, RayLanes, holds};
 use crate::simd::prefetch_lines;
 use crate::{Hit, Ray, Shape, Side, Sphere, Triangle};
 
@@ -17,6 +18,9 @@ use crate::{Hit, Ray, Shape, Side, Sphere, Triangle};
 pub(crate) trait Leaf: Copy + PartialEq + Send + Sync {
     /// Bounds of the closest hit's `t`; `None` if nothing in the range is hit, or the hit surely lies beyond `limit`.
     fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate>;
+
+    /// The same for eight rays with one origin, as far as a filter decides.
+    fn lane_candidates<S: Simd>(&self, simd: S, rays: &RayLanes<S>, range: (f64, f64)) -> LaneCandidates<S>;
 
     /// Whether the range holds a hit.
     fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool;
@@ -48,6 +52,11 @@ impl Leaf for Sphere {
     #[inline(always)]
     fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate> {
         self.candidate::<FMA>(ray, limit)
+    }
+
+    #[inline(always)]
+    fn lane_candidates<S: Simd>(&self, simd: S, rays: &RayLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
+        self.lane_candidates(simd, rays, range)
     }
 
     #[inline(always)]
@@ -89,6 +98,11 @@ impl Leaf for Triangle {
     #[inline(always)]
     fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate> {
         self.candidate::<FMA>(ray, limit)
+    }
+
+    #[inline(always)]
+    fn lane_candidates<S: Simd>(&self, simd: S, rays: &RayLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
+        self.lane_candidates(simd, rays, range)
     }
 
     #[inline(always)]
@@ -253,9 +267,9 @@ impl Query for Any {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closest {
     /// Both infinite as long as nothing is hit.
-    bounds: Candidate,
+    pub(crate) bounds: Candidate,
     /// Where the best is; [`NOWHERE`](Self::NOWHERE) as long as nothing is hit. (An `Option` costs a branch a hit.)
-    place: usize,
+    pub(crate) place: usize,
 }
 
 impl Default for Closest {
@@ -297,7 +311,7 @@ impl Query for Closest {
 }
 
 impl Closest {
-    const NOWHERE: usize = usize::MAX;
+    pub(crate) const NOWHERE: usize = usize::MAX;
 
     /// The bounds overlap: compares the correctly rounded parameters, then the indices.
     #[cold]
@@ -319,5 +333,90 @@ impl Closest {
         let new = leaves.rounded(bounds, place, ray);
         let old = leaves.rounded(self.bounds, self.place, ray);
         *self = if new.total_cmp(&old).then(lower).is_lt() { exact(new, place) } else { exact(old, self.place) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::Range;
+
+    use fearless_simd::{Level, f64x8, prelude::*};
+    use glam::DVec3;
+    use oracle::Random;
+
+    use super::*;
+    use crate::simd::dispatch;
+
+    #[inline(always)]
+    fn lanes<S: Simd, L: Leaf>(simd: S, leaf: &L, rays: &[Ray; 8], range: (f64, f64)) -> (u64, u64, [[f64; 8]; 2]) {
+        let numbers = |number: &dyn Fn(&Ray) -> f64| f64x8::from_slice(simd, &rays.each_ref().map(number));
+        let rays = RayLanes {
+            origin: rays[0].origin(),
+            direction: [0, 1, 2].map(|axis| numbers(&|ray| ray.direction()[axis])),
+            reach: numbers(&Ray::reach),
+            square: numbers(&Ray::square),
+            inverse_square: numbers(&Ray::inverse_square),
+        };
+        let found = leaf.lane_candidates(simd, &rays, range);
+        (found.none, found.some, [found.low.into(), found.high.into()])
+    }
+
+    /// How often the filter ruled out, gave bounds, and left open.
+    fn check<L: Leaf>(
+        leaf: &L,
+        target: DVec3,
+        closest: impl Fn(&Ray, Range<f64>) -> Option<f64>,
+        random: &mut Random,
+    ) -> [usize; 3] {
+        let origin = target + random.point() * random.power(-4..8);
+        let along = target - origin;
+        let width = along.length() * random.power(-54..0);
+        // One direction is out of the range where the filters are proved.
+        let length = if random.one_in(8) { random.power(-400..400) } else { 1.0 };
+        let rays: [Ray; 8] = std::array::from_fn(|lane| {
+            let aside = if lane == 0 { DVec3::ZERO } else { width * random.point() };
+            Ray::new(origin, length * (along + aside)).unwrap()
+        });
+        let mut count = [0; 3];
+        let ends = [f64::INFINITY, 1.0 / length, (1.0 / length).next_up()];
+        for (start, end) in [(0.0, random.pick(&ends)), (1.0 / length, f64::INFINITY)] {
+            for level in [Level::new(), Level::baseline()] {
+                let (none, some, [low, high]) = dispatch!(level, simd => lanes(simd, leaf, &rays, (start, end)));
+                for (lane, ray) in rays.iter().enumerate() {
+                    let t = closest(ray, start..end);
+                    let (none, some) = (none >> lane & 1 == 1, some >> lane & 1 == 1);
+                    assert!(!none || t.is_none(), "{level:?} {ray:?} {start} {end} {t:?}");
+                    let holds = t.is_some_and(|t| low[lane] <= t && t <= high[lane]);
+                    assert!(!some || holds, "{level:?} {ray:?} {start} {end} {t:?} {low:?} {high:?}");
+                    count[if none { 0 } else { 2 - usize::from(some) }] += 1;
+                }
+            }
+        }
+        count
+    }
+
+    /// Rays at silhouettes, edges and corners, exactly and up to rounding, and ranges that end at a hit: what the filter
+    /// for eight rays says is what exact arithmetic says.
+    #[test]
+    fn eight_rays_are_told_nothing_that_is_wrong() {
+        let random = &mut Random::new(8);
+        let mut counts = [[0; 3]; 2];
+        for _ in 0..3_000 {
+            let sphere = Sphere::new(random.point(), random.power(-20..2)).unwrap();
+            let sides = [DVec3::X, DVec3::ZERO, random.direction()];
+            let target = sphere.center() + sphere.radius() * random.pick(&sides);
+            let count = check(&sphere, target, |ray, within| sphere.closest(ray, within), random);
+            (0..3).for_each(|i| counts[0][i] += count[i]);
+
+            let size = random.power(-12..2);
+            let at = random.point();
+            let mut corner = || at + size * random.point();
+            let triangle = Triangle::new(corner(), corner(), corner()).unwrap();
+            let [a, b, c] = triangle.vertices();
+            let target = random.pick(&[a, 0.5 * (a + b), 0.25 * a + 0.75 * c, (a + b + c) / 3.0]);
+            let count = check(&triangle, target, |ray, within| triangle.closest(ray, within), random);
+            (0..3).for_each(|i| counts[1][i] += count[i]);
+        }
+        assert!(counts.iter().flatten().all(|&count| count > 5_000), "{counts:?}");
     }
 }

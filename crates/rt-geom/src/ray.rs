@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 use rt_math::exact::power_of_two;
 
@@ -219,6 +220,42 @@ impl Candidate {
     pub(crate) fn exact(t: Option<f64>, limit: f64) -> Option<Self> {
         t.filter(|&t| t <= limit).map(|t| Self { low: t, high: t })
     }
+}
+
+/// Eight rays with one origin, a quantity a vector.
+pub(crate) struct RayLanes<S: Simd> {
+    pub(crate) origin: DVec3,
+    pub(crate) direction: [f64x8<S>; 3],
+    /// As [`Ray`] has them.
+    pub(crate) reach: f64x8<S>,
+    pub(crate) square: f64x8<S>,
+    pub(crate) inverse_square: f64x8<S>,
+}
+
+impl<S: Simd> RayLanes<S> {
+    /// `v . d` in plain doubles.
+    #[inline(always)]
+    pub(crate) fn dot(&self, v: DVec3) -> f64x8<S> {
+        let [x, y, z] = self.direction;
+        x.mul_add(v.x, y.mul_add(v.y, z * v.z))
+    }
+
+    /// `d x v` in plain doubles.
+    #[inline(always)]
+    pub(crate) fn cross(&self, v: DVec3) -> [f64x8<S>; 3] {
+        let [x, y, z] = self.direction;
+        [y.mul_sub(v.z, z * v.y), z.mul_sub(v.x, x * v.z), x.mul_sub(v.y, y * v.x)]
+    }
+}
+
+/// What a filter says about eight rays and a shape. Rays that it neither rules out nor gives a candidate are for
+/// [`candidate`](crate::leaf::Leaf::candidate) to decide.
+pub(crate) struct LaneCandidates<S: Simd> {
+    pub(crate) low: f64x8<S>,
+    pub(crate) high: f64x8<S>,
+    /// As bits: the rays that surely have no hit in the range, and those of which the bounds are a [`Candidate`]'s.
+    pub(crate) none: u64,
+    pub(crate) some: u64,
 }
 
 /// What a filter in plain doubles says about a line and a shape.

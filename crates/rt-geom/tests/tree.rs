@@ -268,6 +268,55 @@ fn every_instruction_set_gives_the_same_bits() {
     assert!(tried >= 2 * scenes().len(), "at least the scalar level and one other");
 }
 
+/// Pictures of every scene: by eyes within it, at its primitives and up to a few hundred sizes away, wide and down to a
+/// few doubles across, in rows and in disorder. They walk the tree in tiles.
+#[test]
+fn tiles_of_pictures_give_the_plain_loops_hits() {
+    const SIDE: i32 = 20;
+    let long = std::env::var_os("RT_LONG").is_some();
+    let random = &mut Random::new(11);
+    let mut hits = 0;
+    for scene in scenes() {
+        let tree = Bvh::new(scene.spheres.clone(), scene.triangles.clone());
+        for _ in 0..if long { 100 } else { 4 } {
+            let seed = rays(&scene, 16 + random.below(64));
+            let at = random.pick(&seed);
+            let target = match closest_by_loop(&scene, &at, &AHEAD) {
+                Some(hit) if !random.one_in(4) => at.at(hit.t),
+                _ => scene.center + scene.size * random.point(),
+            };
+            let away = random.direction() * scene.size * 10f64.powf(random.within(-2.0, 2.0));
+            let eye = random.pick(&[at.origin(), target + away, scene.center]);
+            let along = target - eye;
+            let sides = [along.cross(DVec3::Y), along.cross(random.point())];
+            let right = random.pick(&sides);
+            let width = along.length() * 10f64.powf(random.within(-16.0, 0.0)) / f64::from(SIDE);
+            let right = right.normalize_or_zero() * width;
+            let up = right.cross(along).normalize_or_zero() * width;
+            let pixels = (0..SIDE * SIDE).map(|i| (f64::from(i % SIDE - SIDE / 2), f64::from(i / SIDE - SIDE / 2)));
+            let mut rays: Vec<Ray> =
+                pixels.filter_map(|(x, y)| Ray::new(eye, along + x * right + y * up).ok()).collect();
+            if random.one_in(4) {
+                random.shuffle(&mut rays);
+            }
+            let t = rays.first().and_then(|ray| tree.closest(ray, AHEAD)).map_or(1.0, |hit| hit.t);
+            for within in [AHEAD, 0.0..t, 0.0..t.next_up(), t..f64::INFINITY] {
+                let expected: Vec<_> = rays.iter().map(|ray| bits(closest_by_loop(&scene, ray, &within))).collect();
+                hits += expected.iter().flatten().count();
+                for name in ["sse2", "avx2", "avx512", "neon"] {
+                    let Some(tree) = tree.clone().with_simd(name) else { continue };
+                    let mut batch = vec![None; rays.len()];
+                    tree.closest_batch(&rays, within.clone(), &mut batch);
+                    for ((hit, &expected), ray) in batch.into_iter().zip(&expected).zip(&rays) {
+                        assert_eq!(bits(hit), expected, "{name}, {} in {within:?}: {ray:?}", scene.name);
+                    }
+                }
+            }
+        }
+    }
+    assert!(hits > 20_000, "the pictures show too little: {hits}");
+}
+
 #[test]
 fn rays_of_extreme_exponents_are_answered_as_by_the_loop() {
     let random = &mut Random::new(3);

@@ -95,12 +95,34 @@ struct Survivors {
     len: usize,
 }
 
-/// Answers a query for all rays.
+/// Rays that are still to be launched, each with its place.
+struct Waiting<'a> {
+    rays: &'a [Ray],
+    only: Option<&'a [usize]>,
+    next: usize,
+}
+
+impl<'a> Iterator for Waiting<'a> {
+    type Item = (usize, &'a Ray);
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let place = match self.only {
+            Some(only) => *only.get(self.next)?,
+            None => self.next,
+        };
+        self.next += 1;
+        Some((place, self.rays.get(place)?))
+    }
+}
+
+/// Answers a query for all rays, or only those at some places.
 #[inline(always)]
 pub(super) fn fly<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
     rays: &[Ray],
+    only: Option<&[usize]>,
     within: &Range<f64>,
     answers: &mut [Q::Answer],
 ) {
@@ -111,12 +133,12 @@ pub(super) fn fly<S: Simd, Q: Query>(
         return;
     }
     let areas = Areas::of(tree);
-    let mut waiting = rays.iter().enumerate();
+    let mut waiting = Waiting { rays, only, next: 0 };
     let mut lists = Lists::NONE;
     let fetch = tree.is_large();
     // A step writes sixteen entries, however many are met.
     let depth = tree.stack + WIDTH;
-    let flight = FLIGHT.min(rays.len());
+    let flight = FLIGHT.min(only.map_or(rays.len(), <[usize]>::len));
     let mut slots: Vec<Slot<Q>> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
     let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
     let mut tours: Vec<Tour> = slots.iter().filter_map(|_| tree.crown.as_ref().map(Tour::new)).collect();
@@ -199,7 +221,7 @@ fn launch<'a, S: Simd, Q: Query>(
     mut tour: Option<&mut Tour>,
     tree: &Bvh,
     within: &Range<f64>,
-    waiting: &mut impl Iterator<Item = (usize, &'a Ray)>,
+    waiting: &mut Waiting<'a>,
     answers: &mut [Q::Answer],
 ) -> Option<usize> {
     let only = tree.regions.first();

@@ -16,13 +16,13 @@ use super::node::{Balls, Boxes, Frame, Lanes, WIDTH, down, up};
 use crate::ray::{PreparedRay, larger};
 
 /// Half the spacing of f32 numbers at 1.
-const U: f32 = 1.0 / (1 << 24) as f32;
+pub(super) const U: f32 = 1.0 / (1 << 24) as f32;
 /// The rounding errors of the box test, as a displacement of a plane.
 const BOX_SLACK: f32 = 8.0 * U;
 /// The rounding errors of the ball test, as a distance.
 const BALL_SLACK: f32 = 64.0 * U;
 /// The rounding errors of the f64 part, for each unit of distance between origin and center.
-const LINE_ERROR: f64 = 1.0 / (1u64 << 46) as f64;
+pub(super) const LINE_ERROR: f64 = 1.0 / (1u64 << 46) as f64;
 /// Beyond this error nothing is culled.
 const MAX_LINE_ERROR: f64 = 1.0 / 16.0;
 /// Parameters of points in the unit ball lie within this, the error included.
@@ -30,7 +30,7 @@ const REACH: f64 = 1.125;
 /// More than the rounding of a parameter to f32.
 const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 /// The reciprocals of a direction's components are no larger than this.
-const MAX_INVERSE: f32 = (1u64 << 40) as f32;
+pub(super) const MAX_INVERSE: f32 = (1u64 << 40) as f32;
 /// Added to keys: makes them positive, so that their bits are in order.
 const KEY_SHIFT: f32 = 4.0;
 
@@ -188,7 +188,7 @@ fn scaled(d: DVec3) -> (DVec3, f64) {
 ///
 /// Source: T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
 #[inline(always)]
-fn across(w: Vec3) -> [Vec3; 3] {
+pub(super) fn across(w: Vec3) -> [Vec3; 3] {
     let sign = 1.0_f32.copysign(w.z);
     let a = -1.0 / (sign + w.z);
     let b = w.x * w.y * a;
@@ -208,18 +208,34 @@ pub(super) fn meet_boxes<S: Simd>(simd: S, line: &CullRay, boxes: &Boxes, keys: 
 pub(super) fn box_keys<S: Simd>(simd: S, line: &CullRay, boxes: &Boxes) -> (u32x16<S>, mask32x16<S>) {
     let near = |axis: usize| (line.near[axis], line.inverse[axis], line.near_offset[axis]);
     let far = |axis: usize| (line.far[axis], line.inverse[axis], line.far_offset[axis]);
-    let (x, y, z) = (near(0), near(1), near(2));
-    let enter = planes(simd, boxes, x).max(planes(simd, boxes, y));
-    let enter = enter.max(planes(simd, boxes, z).max(f32x16::splat(simd, line.start)));
-    let (x, y, z) = (far(0), far(1), far(2));
-    let leave = planes(simd, boxes, x).min(planes(simd, boxes, y));
-    let leave = leave.min(planes(simd, boxes, z).min(f32x16::splat(simd, line.end)));
+    let (enter, leave) =
+        slabs(simd, boxes, [near(0), near(1), near(2)], [far(0), far(1), far(2)], (line.start, line.end));
     ((enter + KEY_SHIFT).bitcast(), enter.simd_le(leave))
+}
+
+/// A row of planes, and where it is met: the plane times the first number, plus the second.
+pub(super) type Slab = (usize, f32, f32);
+
+/// Where each box is entered and left, between two ends.
+#[inline(always)]
+pub(super) fn slabs<S: Simd>(
+    simd: S,
+    boxes: &Boxes,
+    near: [Slab; 3],
+    far: [Slab; 3],
+    (start, end): (f32, f32),
+) -> (f32x16<S>, f32x16<S>) {
+    let [x, y, z] = near;
+    let enter = planes(simd, boxes, x).max(planes(simd, boxes, y));
+    let enter = enter.max(planes(simd, boxes, z).max(f32x16::splat(simd, start)));
+    let [x, y, z] = far;
+    let leave = planes(simd, boxes, x).min(planes(simd, boxes, y));
+    (enter, leave.min(planes(simd, boxes, z).min(f32x16::splat(simd, end))))
 }
 
 /// Where a line meets a row of planes. (Not a closure: a closure would not be compiled for the instruction set.)
 #[inline(always)]
-fn planes<S: Simd>(simd: S, boxes: &Boxes, (row, inverse, offset): (usize, f32, f32)) -> f32x16<S> {
+fn planes<S: Simd>(simd: S, boxes: &Boxes, (row, inverse, offset): Slab) -> f32x16<S> {
     load(simd, &boxes.0[row]).mul_add(f32x16::splat(simd, inverse), f32x16::splat(simd, offset))
 }
 
@@ -238,20 +254,25 @@ pub(super) fn meet_balls<S: Simd>(simd: S, line: &CullRay, balls: &Balls) -> u32
 
 /// How far along an axis the points are.
 #[inline(always)]
-fn along<S: Simd>(simd: S, (x, y, z): (f32x16<S>, f32x16<S>, f32x16<S>), axis: Vec3, offset: f32) -> f32x16<S> {
+pub(super) fn along<S: Simd>(
+    simd: S,
+    (x, y, z): (f32x16<S>, f32x16<S>, f32x16<S>),
+    axis: Vec3,
+    offset: f32,
+) -> f32x16<S> {
     let z = z.mul_add(f32x16::splat(simd, axis.z), f32x16::splat(simd, -offset));
     let yz = y.mul_add(f32x16::splat(simd, axis.y), z);
     x.mul_add(f32x16::splat(simd, axis.x), yz)
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
+pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes) -> f32x16<S> {
     f32x16::from_slice(simd, &lanes.0)
 }
 
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "sixteen bits are set at most")]
-fn bits(mask: u64) -> u32 {
+pub(super) fn bits(mask: u64) -> u32 {
     mask as u32
 }
 

@@ -11,6 +11,8 @@ mod cull;
 mod groups;
 mod node;
 mod rank;
+mod tile;
+mod tiles;
 mod walk;
 
 use std::ops::Range;
@@ -149,7 +151,7 @@ impl Bvh {
     /// # Panics
     /// If the slices differ in length.
     pub fn closest_batch(&self, rays: &[Ray], within: Range<f64>, hits: &mut [Option<Hit>]) {
-        self.batch::<Closest>(rays, &within, hits);
+        self.closest_of_all(rays, &within, hits);
     }
 
     /// Writes for each ray whether it hits anything.
@@ -166,9 +168,15 @@ impl Bvh {
     }
 
     #[inline(never)]
+    fn closest_of_all(&self, rays: &[Ray], within: &Range<f64>, answers: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), answers.len(), "one place for the answer to each ray");
+        dispatch!(self.level, simd => tiles::closest_batch(simd, self, rays, within, answers));
+    }
+
+    #[inline(never)]
     pub(crate) fn batch<Q: Query>(&self, rays: &[Ray], within: &Range<f64>, answers: &mut [Q::Answer]) {
         assert_eq!(rays.len(), answers.len(), "one place for the answer to each ray");
-        dispatch!(self.level, simd => fly::<_, Q>(simd, self, rays, within, answers));
+        dispatch!(self.level, simd => fly::<_, Q>(simd, self, rays, None, within, answers));
     }
 }
 

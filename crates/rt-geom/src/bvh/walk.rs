@@ -29,7 +29,7 @@ const STACK: usize = 128;
 const CACHED: usize = 1 << 15;
 
 #[inline(always)]
-fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
+pub(super) fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
     u64::from(keys[lane]) << 32 | u64::from(children[lane].bits())
 }
 
@@ -237,7 +237,7 @@ fn walk<S: Simd, Q: Query>(
 /// The nearest of the children that `next` gives, each with whether it is the last; the others go on the stack,
 /// farthest first.
 #[inline(always)]
-fn nearest(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], height: &mut usize) -> Pending {
+pub(super) fn nearest(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], height: &mut usize) -> Pending {
     let (a, last) = next();
     if last {
         return a;
@@ -312,7 +312,7 @@ fn block<S: Simd, Q: Query, B: Block>(
 
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the child is the low half")]
-fn child(pending: Pending) -> Child {
+pub(super) fn child(pending: Pending) -> Child {
     Child::from_bits(pending as u32)
 }
 

@@ -3,14 +3,14 @@
 
 use std::ops::Range;
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f64x8, prelude::*};
 use rt_math::Roots;
 use rt_math::exact::{U, power_of_two};
 
 use super::finish::{SphereCrossing, WhichRoot, rounded};
 use super::{Sphere, exact};
 use crate::Ray;
-use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds};
+use crate::ray::{Candidate, FilterVerdict, LaneCandidates, PreparedRay, RayLanes, cross, dot, holds};
 use crate::simd::dispatch;
 
 /// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there,
@@ -125,6 +125,37 @@ impl Sphere {
             FilterVerdict::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
+    }
+
+    /// The same for eight rays, as far as the filter decides and the near root is the hit.
+    // The operations of `filter` and `approximation`.
+    #[inline(always)]
+    pub(crate) fn lane_candidates<S: Simd>(
+        &self,
+        simd: S,
+        rays: &RayLanes<S>,
+        (start, end): (f64, f64),
+    ) -> LaneCandidates<S> {
+        let w = rays.origin - self.center;
+        let [x, y, z] = rays.cross(w);
+        let (w_square, radius_square) = (dot::<false>(w, w), self.radius * self.radius);
+        let delta = rays.square.mul_sub(radius_square, x.mul_add(x, y.mul_add(y, z * z)));
+        let squares = w_square + radius_square;
+        let error = (rays.square * ERROR) * squares;
+        let is_proved = squares > SMALLEST && squares < LARGEST;
+        let proved = if is_proved { u64::MAX } else { 0 };
+        let misses = delta.simd_lt(-error).to_bitmask() & proved;
+        let crosses = delta.simd_gt(error).to_bitmask() & proved;
+        if crosses == 0 {
+            return LaneCandidates { low: delta, high: delta, none: misses, some: 0 };
+        }
+        let (root, inverse) = (delta.sqrt(), f64x8::splat(simd, 1.0) / delta);
+        let near = (-rays.dot(w) - root) * rays.inverse_square;
+        let error = ((error * 1.6) * rays.inverse_square) * inverse * root;
+        let (low, high) = (near - error, near + error);
+        let in_range = (low.simd_gt(f64x8::splat(simd, start)) & high.simd_lt(f64x8::splat(simd, end))).to_bitmask();
+        let beyond = low.simd_gt(f64x8::splat(simd, end)).to_bitmask();
+        LaneCandidates { low, high, none: misses | (crosses & beyond), some: crosses & in_range }
     }
 
     /// Returns the candidate of a line that crosses the surface.
