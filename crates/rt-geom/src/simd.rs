@@ -1,10 +1,12 @@
 //! The choice of an instruction set, made once for a kernel, and what the set offers.
 
+use std::ops::Mul;
+
 #[cfg(not(target_feature = "sse2"))]
 use fearless_simd::Fallback as Baseline;
 #[cfg(target_feature = "sse2")]
 use fearless_simd::Sse2 as Baseline;
-use fearless_simd::{Simd, f64x4, prelude::*};
+use fearless_simd::{Simd, prelude::*};
 use rt_math::exact::two_prod_with;
 
 /// Compiles a kernel for each instruction set that earns its copy, and runs the copy for the processor.
@@ -112,7 +114,10 @@ pub(crate) fn has_fma<S: Simd>(simd: S) -> bool {
 
 /// [`rt_math::exact::two_prod`] in every lane.
 #[inline(always)]
-pub(crate) fn two_prod<const FMA: bool, S: Simd>(a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
+pub(crate) fn two_prod<const FMA: bool, S: Simd, V>(a: V, b: V) -> (V, V)
+where
+    V: SimdFloat<S, Element = f64> + Mul<f64, Output = V>,
+{
     two_prod_with::<FMA, _>(
         a,
         b,

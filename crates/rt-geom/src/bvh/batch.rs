@@ -15,13 +15,15 @@ use super::crown::Tour;
 use super::cull::{CullRay, box_keys};
 use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
 use super::walk::{Areas, meet, next_region};
-use crate::leaf::Query;
+use crate::leaf::{Closest, Query, finish};
 use crate::ray::{PreparedRay, is_open};
 use crate::simd::prefetch_lines;
 use crate::{Ray, Sphere, Triangle, Visits};
 
 /// Rays on their way at once.
 const FLIGHT: usize = 64;
+/// Hits that are rounded at once.
+const EIGHT: usize = 8;
 
 /// The low bits of a pending key tell the child's lane.
 const LANE: u32 = 15;
@@ -195,7 +197,15 @@ pub(super) fn fly<S: Simd, Q: Query>(
             prefetch_lines(&tree.leaves.triangles[place as usize], 2);
         }
         let (done, len) = lists.take(DONE);
-        for &at in &done[..len] {
+        // Eight at a time, as long as others are on their way.
+        let now = if lists.len.iter().sum::<usize>() > 0 { len - len % EIGHT } else { len };
+        for &at in &done[now..len] {
+            lists.push(DONE, usize::from(at));
+        }
+        for done in done[..now].chunks(EIGHT) {
+            finish_slots(simd, tree, &mut slots, done);
+        }
+        for &at in &done[..now] {
             let at = usize::from(at);
             let slot = &mut slots[at];
             if let Some(tour) = tours.get_mut(at)
@@ -209,6 +219,25 @@ pub(super) fn fly<S: Simd, Q: Query>(
                 Some(list) => lists.push(list, at),
                 None => flying -= 1,
             }
+        }
+    }
+}
+
+/// Works out the last bits of what up to eight rays hit.
+#[inline(always)]
+fn finish_slots<S: Simd, Q: Query>(simd: S, tree: &Bvh, slots: &mut [Slot<Q>], at: &[u8]) {
+    let lanes: [usize; EIGHT] = std::array::from_fn(|lane| usize::from(at[lane.min(at.len() - 1)]));
+    let mut best = [Closest::default(); EIGHT];
+    for (best, &at) in best.iter_mut().zip(&lanes) {
+        match slots[at].query.closest() {
+            Some(closest) => *best = *closest,
+            None => return,
+        }
+    }
+    finish(simd, &tree.leaves, &mut best, lanes.map(|at| slots[at].ray.ray));
+    for (best, at) in best.into_iter().zip(lanes) {
+        if let Some(closest) = slots[at].query.closest() {
+            *closest = best;
         }
     }
 }

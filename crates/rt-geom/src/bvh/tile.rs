@@ -17,7 +17,7 @@ use super::Bvh;
 use super::cull::{LINE_ERROR, MAX_INVERSE, Slab, U, across, bits, load, slabs};
 use super::node::{Balls, Block, Blocked, Boxes, Frame, Kind, Lanes, WIDTH, up};
 use super::walk::{Areas, Pending, child, nearest, pending};
-use crate::leaf::{Closest, Leaves, Query};
+use crate::leaf::{Closest, Leaves, Query, finish};
 use crate::ray::{Candidate, PreparedRay, RayLanes};
 use crate::simd::{has_fma, prefetch_lines};
 use crate::{Hit, Ray};
@@ -489,9 +489,13 @@ pub(super) fn closest<S: Simd>(
             }
         }
     }
-    for (lane, &target) in order.iter().enumerate() {
-        let mut best = tile.best(lane);
-        answers[target] = best.answer(&tree.leaves, &PreparedRay::new(&rays[target], within.clone()));
+    for (first, targets) in (0..).step_by(EIGHT).zip(order.chunks(EIGHT)) {
+        let mut best: [Closest; EIGHT] = std::array::from_fn(|lane| tile.best(first + lane));
+        let lanes: [&Ray; EIGHT] = std::array::from_fn(|lane| &rays[targets[lane.min(targets.len() - 1)]]);
+        finish(simd, &tree.leaves, &mut best, lanes);
+        for (mut best, &target) in best.into_iter().zip(targets) {
+            answers[target] = best.answer(&tree.leaves, &PreparedRay::new(&rays[target], within.clone()));
+        }
     }
     Outcome::Done(tile.work)
 }

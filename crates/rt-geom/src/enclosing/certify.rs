@@ -31,7 +31,7 @@ pub(super) struct Bracket {
 /// `a b` and its rounding error, exactly, lane by lane.
 #[inline(always)]
 fn two_product<S: Simd>(simd: S, a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, f64x4<S>) {
-    if has_fma(simd) { lanes::two_prod::<true, _>(a, b) } else { lanes::two_prod::<false, _>(a, b) }
+    if has_fma(simd) { lanes::two_prod::<true, _, _>(a, b) } else { lanes::two_prod::<false, _, _>(a, b) }
 }
 
 /// How far four spheres reach from a center.

@@ -3,23 +3,23 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::Simd;
 use rt_math::Roots;
 use rt_math::exact::{U, power_of_two};
 
-use super::finish::{SphereCrossing, WhichRoot, rounded};
+use super::finish::{Approximation, SphereCrossing, WhichRoot, rounded};
 use super::{Sphere, exact};
 use crate::Ray;
-use crate::ray::{Candidate, FilterVerdict, LaneCandidates, PreparedRay, RayLanes, cross, dot, holds};
+use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds};
 use crate::simd::dispatch;
 
 /// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there,
 /// and what underflows is far below the bounds.
-const SMALLEST: f64 = power_of_two(-250);
-const LARGEST: f64 = power_of_two(600);
+pub(super) const SMALLEST: f64 = power_of_two(-250);
+pub(super) const LARGEST: f64 = power_of_two(600);
 
 /// The error of `Delta` in the filter, relative to `d.d (w.w + r²)`, as `docs/numerics.md`, section 5, has it.
-const ERROR: f64 = 17.0 * U;
+pub(super) const ERROR: f64 = 17.0 * U;
 
 /// The filter: decides in plain doubles whether the line crosses the surface, where that is certain.
 // Modelled in docs/proofs/Sphere.v: tx, tdelta, tsquares, terror, tb, tc.
@@ -64,7 +64,11 @@ pub(super) fn closest_kernel<const FMA: bool, S: Simd>(
         FilterVerdict::Misses => return None,
         FilterVerdict::Crosses(crossing) => {
             let roots = crossing.approximation();
-            match crossing.first(start, &roots) {
+            let mut first = crossing.first(start, &roots);
+            if first.is_none() && start.to_bits() == 0 {
+                first = crossing.first_by_side(exact::side(sphere, ray.origin()), &roots);
+            }
+            match first {
                 Some(Some(place)) => rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, place),
                 Some(None) => return None,
                 None => None,
@@ -127,37 +131,6 @@ impl Sphere {
         }
     }
 
-    /// The same for eight rays, as far as the filter decides and the near root is the hit.
-    // The operations of `filter` and `approximation`.
-    #[inline(always)]
-    pub(crate) fn lane_candidates<S: Simd>(
-        &self,
-        simd: S,
-        rays: &RayLanes<S>,
-        (start, end): (f64, f64),
-    ) -> LaneCandidates<S> {
-        let w = rays.origin - self.center;
-        let [x, y, z] = rays.cross(w);
-        let (w_square, radius_square) = (dot::<false>(w, w), self.radius * self.radius);
-        let delta = rays.square.mul_sub(radius_square, x.mul_add(x, y.mul_add(y, z * z)));
-        let squares = w_square + radius_square;
-        let error = (rays.square * ERROR) * squares;
-        let is_proved = squares > SMALLEST && squares < LARGEST;
-        let proved = if is_proved { u64::MAX } else { 0 };
-        let misses = delta.simd_lt(-error).to_bitmask() & proved;
-        let crosses = delta.simd_gt(error).to_bitmask() & proved;
-        if crosses == 0 {
-            return LaneCandidates { low: delta, high: delta, none: misses, some: 0 };
-        }
-        let (root, inverse) = (delta.sqrt(), f64x8::splat(simd, 1.0) / delta);
-        let near = (-rays.dot(w) - root) * rays.inverse_square;
-        let error = ((error * 1.6) * rays.inverse_square) * inverse * root;
-        let (low, high) = (near - error, near + error);
-        let in_range = (low.simd_gt(f64x8::splat(simd, start)) & high.simd_lt(f64x8::splat(simd, end))).to_bitmask();
-        let beyond = low.simd_gt(f64x8::splat(simd, end)).to_bitmask();
-        LaneCandidates { low, high, none: misses | (crosses & beyond), some: crosses & in_range }
-    }
-
     /// Returns the candidate of a line that crosses the surface.
     #[inline(always)]
     fn offer(&self, crossing: &SphereCrossing, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
@@ -166,15 +139,29 @@ impl Sphere {
         if low > prepared.start && high < prepared.end {
             (low <= limit).then_some(Candidate { low, high })
         } else {
-            self.offer_far(roots.near, roots.far, roots.error, prepared, limit)
+            self.offer_far(crossing, &roots, prepared, limit)
         }
     }
 
     /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of
     /// the root.
     #[inline(never)]
-    fn offer_far(&self, near: f64, far: f64, error: f64, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
-        let t = if near + error < prepared.start { far } else { near };
+    fn offer_far(
+        &self,
+        crossing: &SphereCrossing,
+        roots: &Approximation,
+        prepared: &PreparedRay,
+        limit: f64,
+    ) -> Option<Candidate> {
+        let Approximation { near, far, error, .. } = *roots;
+        let mut t = if near + error < prepared.start { far } else { near };
+        if prepared.start.to_bits() == 0 && near - error <= 0.0 && near + error >= 0.0 {
+            match crossing.first_by_side(exact::side(self, prepared.ray.origin()), roots) {
+                Some(Some(WhichRoot::Far)) => t = far,
+                Some(None) => return None,
+                _ => {}
+            }
+        }
         prepared.admit((t - error, t + error), limit, || self.exact_candidate(prepared.ray, prepared.within(), limit))
     }
 

@@ -13,12 +13,12 @@
 use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
 use rt_math::exact::{U, round_if_certain, two_diff, two_sum};
 
-use super::Sphere;
+use super::{Side, Sphere};
 use crate::Ray;
 use crate::simd::two_prod;
 
 /// The error of half the residual, relative to `w.w + r²`.
-const RESIDUAL_ERROR: f64 = 160.0 * U * U;
+pub(super) const RESIDUAL_ERROR: f64 = 160.0 * U * U;
 
 /// `a t² + 2 b t + c`, for a line that surely crosses the surface twice.
 pub(super) struct SphereCrossing {
@@ -77,6 +77,21 @@ impl SphereCrossing {
             (false, false) => None,
         };
         certain.then_some(first)
+    }
+
+    /// Which root, if any, is the first from +0.0 on for a ray that starts so near to the surface that the filter does not
+    /// know on which side; `None` if it starts on it, or the other root is near too.
+    ///
+    /// The roots have different signs if the origin is inside, and the same if it is outside.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn first_by_side(&self, side: Side, roots: &Approximation) -> Option<Option<WhichRoot>> {
+        match side {
+            Side::Inside => Some(Some(WhichRoot::Far)),
+            Side::Outside if roots.far - roots.error > 0.0 => Some(Some(WhichRoot::Near)),
+            Side::Outside if roots.far + roots.error < 0.0 => Some(None),
+            _ => None,
+        }
     }
 
     /// Which root, if any, is the first not before the start of a range; `None` if that is not certain.
@@ -149,10 +164,10 @@ fn residual<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, t: f6
     let direction = f64x4::simd_from(simd, [d.x, d.y, d.z, 0.0]);
     // The squares of the components of w + t d, as square + low.
     let (w, w_low) = two_diff(origin, center);
-    let (step, step_low) = two_prod::<FMA, S>(f64x4::splat(simd, t), direction);
+    let (step, step_low) = two_prod::<FMA, S, _>(f64x4::splat(simd, t), direction);
     let (high, error) = two_sum(w, step);
     let low = error + (w_low + step_low);
-    let (square, square_low) = two_prod::<FMA, S>(high, high);
+    let (square, square_low) = two_prod::<FMA, S, _>(high, high);
     let low = (high + high).mul_add(low, square_low);
     // (x² + z²) + (y² - r²) is nearly zero, so that the last of these sums is as good as exact.
     let sign = f64x2::simd_from(simd, [1.0, -1.0]);

@@ -15,6 +15,7 @@
 mod exact;
 mod filter;
 mod finish;
+mod lanes;
 
 use std::fmt;
 use std::ops::Range;

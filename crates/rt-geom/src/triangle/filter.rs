@@ -3,19 +3,17 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, f64x8, prelude::*};
-use glam::DVec3;
 use rt_math::exact::U;
 use rt_math::fma_dispatch;
 
 use super::finish::{Refined, TriangleCrossing};
 use super::{FARTHEST, Triangle, exact};
 use crate::Ray;
-use crate::ray::{Candidate, FilterVerdict, LaneCandidates, PreparedRay, RayLanes, cross, dot, holds, larger, smaller};
+use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds, larger, smaller};
 
 /// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to
 /// `E² (E + S)`, as `docs/numerics.md`, section 6, has them.
-const ERROR: f64 = 18.0 * U;
+pub(super) const ERROR: f64 = 18.0 * U;
 
 /// The filter: decides in plain doubles whether the line meets the interior or passes beside the triangle, where that
 /// is certain.
@@ -212,46 +210,6 @@ impl Triangle {
             }),
             FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
-    }
-
-    /// The same for eight rays, as far as the filter decides.
-    // The operations of `filter` and `TriangleCrossing::bounds`.
-    #[inline(always)]
-    pub(crate) fn lane_candidates<S: Simd>(
-        &self,
-        simd: S,
-        rays: &RayLanes<S>,
-        (start, end): (f64, f64),
-    ) -> LaneCandidates<S> {
-        let [a, b, c] = self.vertices;
-        let (e, f, s) = (b - a, c - a, rays.origin - a);
-        let edge = self.edge;
-        let size = edge + (s.x.abs() + s.y.abs() + s.z.abs());
-        let spread = (ERROR * edge) * size;
-        let error = rays.reach * spread;
-        let proved = if size < FARTHEST { u64::MAX } else { 0 };
-        let [x, y, z] = rays.cross(f);
-        let along = |v: DVec3| x.mul_add(v.x, y.mul_add(v.y, z * v.z));
-        let q = cross::<false>(s, e);
-        let (sum, v, w) = (along(e), along(s), rays.dot(q));
-        let sign = f64x8::splat(simd, 1.0).copysign(sum);
-        let (sum, v, w) = (sum.abs(), sign * v, sign * w);
-        let u = (sum - v) - w;
-        let least = v.min(u.min(w));
-        let decided = (sum.simd_gt(error) & least.abs().simd_gt(error)).to_bitmask() & proved;
-        let outside = least.simd_lt(f64x8::splat(simd, 0.0)).to_bitmask();
-        let (misses, crosses) = (decided & outside, decided & !outside);
-        if crosses == 0 {
-            return LaneCandidates { low: sum, high: sum, none: misses, some: 0 };
-        }
-        let inverse = f64x8::splat(simd, 1.0) / sum;
-        let t = (sign * dot::<false>(f, q)) * inverse;
-        let error = (t.abs() * rays.reach + edge) * spread * inverse;
-        let (low, high) = (t - error, t + error);
-        let (start, end) = (f64x8::splat(simd, start), f64x8::splat(simd, end));
-        let in_range = (low.simd_gt(start) & high.simd_lt(end)).to_bitmask();
-        let beside = (low.simd_gt(end) | high.simd_lt(start)).to_bitmask();
-        LaneCandidates { low, high, none: misses | (crosses & beside), some: crosses & in_range }
     }
 
     #[cold]

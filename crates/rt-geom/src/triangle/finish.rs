@@ -20,8 +20,8 @@ use crate::ray::{cross, dot, max_abs};
 
 /// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to
 /// `r`.
-const REST_ERROR: f64 = 136.0 * U * U;
-const SOLUTION_ERROR: f64 = 21.0 * U;
+pub(super) const REST_ERROR: f64 = 136.0 * U * U;
+pub(super) const SOLUTION_ERROR: f64 = 21.0 * U;
 
 /// Möller and Trumbore's quantities for a line that surely meets the interior, all but `e`, `f`, `p` with the sign that
 /// makes the sum of the volumes positive.

@@ -18,6 +18,7 @@
 mod exact;
 mod filter;
 mod finish;
+mod lanes;
 mod locate;
 
 use std::fmt;

@@ -5,6 +5,8 @@
 //! since rounding is monotonic. No midpoint needs to be looked for, and the argument is the same for subnormal
 //! results, where the spacing of doubles is fixed: floating-point addition is correctly rounded there as well.
 
+use core::ops::{Add, Sub};
+
 /// Returns the double nearest to `x`, if `h + l` is close enough to `x` to decide it.
 ///
 /// The condition on `error` is `|x - (h + l)| <= error - u (|l| + error)` with `u` = 2⁻⁵³, the second term for the
@@ -26,10 +28,10 @@ pub fn round_if_certain(h: f64, l: f64, error: f64) -> Option<f64> {
 }
 
 /// Returns the lower and the upper end of the interval of [`round_if_certain`], rounded: where they are equal, so is
-/// the nearest double. For tests of several values at once, without a branch for each.
+/// the nearest double. For tests of several values at once, without a branch for each, or of vectors of doubles.
 #[inline(always)]
 #[must_use]
-pub fn rounded_ends(h: f64, l: f64, error: f64) -> (f64, f64) {
+pub fn rounded_ends<T: Copy + Add<Output = T> + Sub<Output = T>>(h: T, l: T, error: T) -> (T, T) {
     (h + (l - error), h + (l + error))
 }
 
