@@ -295,18 +295,24 @@ fn scaled_roots(a: f64, b: f64, c: f64) -> Option<Roots> {
             none => return Some(none),
         }
     };
-    // Subnormal numbers would have been rounded twice, and infinite ones are left to integers.
-    if !(x.is_normal() && y.is_normal()) {
+    if !(surely_normal(x) && surely_normal(y)) {
         return None;
     }
     Some(if x < y { Roots::Two(x, y) } else { Roots::Two(y, x) })
 }
 
-/// `x 2^k`, if that is a normal double or zero.
+/// Whether a result is above the least normal double, and finite. Subnormal numbers would have been rounded twice, and
+/// so would what rounds up to the least normal one; infinite ones are left to integers.
+#[inline(always)]
+fn surely_normal(x: f64) -> bool {
+    x.abs() > f64::MIN_POSITIVE && x.abs() < f64::INFINITY
+}
+
+/// `x 2^k`, if that is surely a normal double or zero.
 #[inline(always)]
 fn unscaled(x: f64, k: i32) -> Option<f64> {
     let product = scale(x, k);
-    (product.is_normal() || x == 0.0).then_some(product)
+    (surely_normal(product) || x == 0.0).then_some(product)
 }
 
 /// The third stage, in coefficients of `N` limbs and squares of `S = 2 N`; `a` and `c` are not zero.
@@ -556,6 +562,24 @@ mod tests {
             [scale, -(scale * r + tiny), tiny * r]
         });
         assert!(ties > 1_000, "{ties}");
+    }
+
+    #[test]
+    fn a_root_just_below_the_least_normal_double_is_rounded_once() {
+        // The largest subnormal and the least normal double have this midpoint; ties go to the latter.
+        let midpoint = |exponent: i32| ((1_u64 << 53) - 1) as f64 * 2f64.powi(exponent - 1075);
+        // one root is -c / b, up to 2^-1122 of it
+        for sign in [1.0, -1.0] {
+            check(sign, 2f64.powi(100), midpoint(100));
+            check(sign, -(2f64.powi(300)), midpoint(300));
+        }
+        // of a balanced equation, one root is about the midpoint, which is a double there
+        let mut rng = Random::new(30);
+        for _ in 0..cases(10_000) {
+            let (a, b) = (rng.with_exponent(0..1), rng.with_exponent(-1..3));
+            let c = -(a + b) + (a + a + b) * f64::EPSILON * 0.6;
+            check(a * 2f64.powi(1022), b, c * 2f64.powi(-1022));
+        }
     }
 
     #[test]
