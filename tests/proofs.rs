@@ -112,6 +112,14 @@ const FILES: &[File] = &[
             ("D_FLOOR", "rt-math/src/quadratic.rs", "const D_FLOOR: f64 = ", ";"),
         ],
     ),
+    (
+        "QuadraticRange",
+        &[
+            ("ORDINARY_LEAST", "rt-math/src/quadratic.rs", "const ORDINARY: core::ops::Range<f64> = ", ".."),
+            ("ORDINARY_END", "rt-math/src/quadratic.rs", "power_of_two(-256)..", ";"),
+            ("LOPSIDED", "rt-math/src/quadratic.rs", "const LOPSIDED: i32 = ", ";"),
+        ],
+    ),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     (
@@ -134,6 +142,7 @@ const FILES: &[File] = &[
             ("SIDE_ERROR", "rt-geom/src/sphere/exact.rs", "let error = ", " * (square.high()"),
         ],
     ),
+    ("Steps", &[]),
     (
         "SurfaceFilter",
         &[
