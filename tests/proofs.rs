@@ -13,6 +13,13 @@ use std::str::Chars;
 type File = (&'static str, &'static [(&'static str, &'static str, &'static str, &'static str)]);
 
 const FILES: &[File] = &[
+    (
+        "Cancelling",
+        &[
+            ("LARGEST", "rt-math/src/pseudo_inverse/regular.rs", "const LARGEST: f64 = ", ";"),
+            ("CANCELLING_ERROR", "rt-math/src/pseudo_inverse/regular.rs", "const CANCELLING_ERROR: f64 = ", ";"),
+        ],
+    ),
     ("Candidates", &[("CANDIDATE", "rt-geom/src/sphere/finish.rs", "error: ((", " * self.error) * self.inverse_a)")]),
     (
         "Determinant",
