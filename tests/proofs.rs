@@ -20,6 +20,16 @@ const FILES: &[File] = &[
             ("CANCELLING_ERROR", "rt-math/src/pseudo_inverse/regular.rs", "const CANCELLING_ERROR: f64 = ", ";"),
         ],
     ),
+    (
+        "Boxes",
+        &[
+            ("BOX_SLACK", "rt-geom/src/bvh/cull.rs", "const BOX_SLACK: f32 = ", " * U;"),
+            ("MAX_INVERSE", "rt-geom/src/bvh/cull.rs", "const MAX_INVERSE: f32 = ", ";"),
+            ("KEY_SHIFT", "rt-geom/src/bvh/cull.rs", "const KEY_SHIFT: f32 = ", ";"),
+            ("REACH", "rt-geom/src/bvh/cull.rs", "const REACH: f64 = ", ";"),
+            ("ROUNDING", "rt-geom/src/bvh/cull.rs", "const ROUNDING: f64 = ", ";"),
+        ],
+    ),
     ("Candidates", &[("CANDIDATE", "rt-geom/src/sphere/finish.rs", "error: ((", " * self.error) * self.inverse_a)")]),
     (
         "Determinant",
@@ -89,6 +99,13 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "Line",
+        &[
+            ("LINE_ERROR", "rt-geom/src/bvh/cull.rs", "const LINE_ERROR: f64 = ", ";"),
+            ("MAX_LINE_ERROR", "rt-geom/src/bvh/cull.rs", "const MAX_LINE_ERROR: f64 = ", ";"),
+        ],
+    ),
+    (
         "Locate",
         &[
             ("FARTHEST", "rt-geom/src/triangle/locate.rs", "const FARTHEST: f64 = ", ";"),
@@ -103,6 +120,7 @@ const FILES: &[File] = &[
             ("VOLUME_ERROR", "rt-geom/src/triangle/locate.rs", "let error = ", " * (edge * edge) * far + UNDERFLOW;"),
         ],
     ),
+    ("Norm", &[]),
     (
         "Polygon",
         &[(
@@ -129,6 +147,7 @@ const FILES: &[File] = &[
     ),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
+    ("Single", &[("UNIT", "rt-geom/src/bvh/cull.rs", "const U: f32 = ", ";")]),
     (
         "Sphere",
         &[
@@ -273,13 +292,28 @@ fn product(input: &mut Input) -> Option<f64> {
     Some(value)
 }
 
-/// A number, a word for one, a power of two, a sum in parentheses, or the opposite of a factor.
+/// An atom, and perhaps the type it is cast to.
 fn factor(input: &mut Input) -> Option<f64> {
+    let value = atom(input)?;
+    let mut rest = input.clone();
+    if next(&mut rest) == Some('a') && ["as f32", "as f64"].contains(&&*rest.by_ref().take(6).collect::<String>()) {
+        *input = rest;
+    }
+    Some(value)
+}
+
+/// A number, a word for one, a power of two, a sum or a shifted one in parentheses, or the opposite of a factor.
+fn atom(input: &mut Input) -> Option<f64> {
     match next(input)? {
         '(' => {
             input.next();
-            let value = sum(input)?;
+            let mut value = sum(input)?;
             next(input)?;
+            if input.next_if_eq(&'<').is_some() {
+                input.next_if_eq(&'<')?;
+                value *= sum(input)?.exp2();
+                next(input)?;
+            }
             (input.next() == Some(')')).then_some(value)
         }
         '-' => {
@@ -295,6 +329,10 @@ fn factor(input: &mut Input) -> Option<f64> {
                 {
                     digits.push(sign);
                 }
+            }
+            if input.next_if_eq(&'u').is_some() {
+                // u64
+                while input.next_if(char::is_ascii_digit).is_some() {}
             }
             // 2⁻⁹⁶⁸ in a docstring
             let mut exponent = String::new();
@@ -325,6 +363,7 @@ fn both_ways_of_writing_are_read() {
     assert_eq!([evaluated("17 * u"), evaluated("17.0 * U")], [value, value]);
     assert_eq!(definition("Definition A_2 := (1 - 4 * u) * bp (-3)."), Some(("A_2", 0.125 - 2f64.powi(-54))));
     assert_eq!([evaluated("power_of_two(-968)"), evaluated("2⁻⁹⁶⁸")], [Some(2f64.powi(-968)); 2]);
+    assert_eq!([evaluated("1.0 / (1u64 << 46) as f64"), evaluated("bp (-46)")], [Some(2f64.powi(-46)); 2]);
     assert_eq!([evaluated("16 / 10"), evaluated("1.6"), evaluated("1e-40")], [Some(1.6), Some(1.6), Some(1e-40)]);
     assert_eq!([definition("Definition tsum := tdot a b."), evaluated("2 +").map(|x| ("", x))], [None, None]);
     assert_eq!(between("let a = 1.0; let b = 7.0 * U * a;", "let b = ", " * a"), Some(7.0 * 2f64.powi(-53)));
