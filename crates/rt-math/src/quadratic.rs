@@ -529,6 +529,57 @@ mod tests {
         assert!(integers > 10_000, "{integers}");
     }
 
+    /// An equation one of whose roots is beside a midpoint, and how far, relatively: `(x - M) (x + w)` with its last
+    /// coefficient rounded, times `s` and with `x / t` for `x`.
+    #[expect(clippy::cast_precision_loss, reason = "even, hence exact; and the rounding that is wanted")]
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number of up to 105 bits")]
+    fn beside_a_midpoint(rng: &mut Random, bits: u32, s: i32, t: i32) -> ([f64; 3], f64) {
+        let midpoint = (1_u64 << 53) | rng.bits() >> 11 | 1;
+        let w = (1 << bits) | (rng.bits() % (1 << bits)) | 1;
+        let product = u128::from(midpoint) * u128::from(w);
+        let c = product as f64;
+        let off = product.abs_diff(c as u128) as f64 / (midpoint + w) as f64 / midpoint as f64;
+        let scale = |x: f64, k: i32| x * 2f64.powi(k);
+        ([scale(1.0, s), -scale((midpoint - w) as f64, s + t), -scale(c, s + 2 * t)], off)
+    }
+
+    #[test]
+    fn each_stage_decides_as_near_to_a_midpoint_as_its_bound_lets_it() {
+        let mut rng = Random::new(41);
+        // The bounds are FILTER_ERROR and DOUBLE_DOUBLE_ERROR; for a root of 2^-438, 2^-500 takes the first one's place.
+        for (bits, s, t, filter_bound) in [(1..50, 0, 0, -73), (50..51, 100, -491, -62)] {
+            let mut seen = [0; 3];
+            for _ in 0..cases(1_000_000) {
+                let bits = u32::try_from(rng.integer(bits.clone())).unwrap();
+                let ([a, b, c], off) = beside_a_midpoint(&mut rng, bits, s, t);
+                // Farther off, the other root may be near a midpoint as well.
+                if off > 2f64.powi(4 + filter_bound) && t != 0 {
+                    continue;
+                }
+                let off = off.log2() - f64::from(filter_bound);
+                let stage = if off > 2.0 {
+                    Stage::Filter
+                } else if off < -2.0 && off > f64::from(-100 - filter_bound) + 2.0 {
+                    Stage::DoubleDouble
+                } else if off < f64::from(-100 - filter_bound) - 2.0 {
+                    Stage::Fixed
+                } else {
+                    continue;
+                };
+                decisions();
+                let roots = kernel::<false>(a, b, c);
+                let found = decisions();
+                assert_eq!(
+                    found[stage as usize], 1,
+                    "solve_quadratic({a:e}, {b:e}, {c:e}) = {roots:?}: {off}, {found:?}"
+                );
+                check(a, b, c);
+                seen[usize::from(off < 2.0) + usize::from(off < -20.0)] += 1;
+            }
+            assert!(seen[0] > 100 && seen[1] > 10 && (filter_bound != -73 || seen[2] > 100), "{seen:?}");
+        }
+    }
+
     #[test]
     fn roots_around_the_overflow_threshold_round_as_they_should() {
         let mut seen = [0; 2];

@@ -388,6 +388,53 @@ mod tests {
         assert!(ties > 500 && fixed > 1_000, "{ties} {fixed}");
     }
 
+    /// The stage that decides a component which lies `2^-(53 + g)` beside a midpoint, relatively: `v_y` less half of its
+    /// last bit, and a little, where the vector is `2^k` times one of ordinary size and the normal leads along `x`.
+    fn stage_beside_a_midpoint(g: i32, k: i32, weaker: i32) -> Option<usize> {
+        let power = |k: i32| 2f64.powi(k);
+        let v = [(1.0 + power(-g)) * power(k + weaker), (1.0625 + power(-30) + power(-52)) * power(k), 0.0];
+        decisions();
+        check(v, [1.0, power(-54 - weaker), 0.0]);
+        decisions().iter().position(|count| *count > 0)
+    }
+
+    #[test]
+    fn each_stage_decides_as_near_to_a_midpoint_as_its_bound_lets_it() {
+        let [double_double, triple, fixed] =
+            [Stage::DoubleDouble, Stage::Triple, Stage::Fixed].map(|s| Some(s as usize));
+        for g in 1..52 {
+            let found = stage_beside_a_midpoint(g, 0, 0);
+            // 2^-97 and 2^-99, where 2^-53 is half of a last bit.
+            let expected = match g {
+                ..=42 => double_double,
+                45 => triple,
+                48.. => fixed,
+                _ => continue,
+            };
+            assert_eq!(found, expected, "{g}");
+        }
+        // 2^-800, whatever the size of the vector.
+        let integers = Some(Stage::Integers as usize);
+        assert_eq!([24, 30].map(|g| stage_beside_a_midpoint(g, -720, 420)), [double_double, integers]);
+    }
+
+    #[test]
+    fn each_stage_decides_up_to_the_ends_of_its_window() {
+        let [double_double, triple, fixed] =
+            [Stage::DoubleDouble, Stage::Triple, Stage::Fixed].map(|s| Some(s as usize));
+        let triple_at = |k| stage_beside_a_midpoint(45, k, 0);
+        assert_eq!([-102, -99, 98, 101].map(triple_at), [fixed, triple, triple, fixed]);
+        let stage = |k: i32, n: i32| {
+            let scaled = |v: [f64; 3], k: i32| v.map(|x| x * 2f64.powi(k));
+            decisions();
+            check(scaled([1.0, 3.0, 5.0], k), scaled([3.0, 5.0, 7.0], n));
+            decisions().iter().position(|count| *count > 0)
+        };
+        // The sum of the products is 53, the square of the normal 83.
+        assert_eq!([-507, -504, 493, 496].map(|k| stage(k, 0)), [fixed, double_double, double_double, fixed]);
+        assert_eq!([-255, -252, 245, 248].map(|n| stage(-n, n)), [fixed, double_double, double_double, fixed]);
+    }
+
     #[test]
     fn images_around_overflow_and_underflow_round_as_they_should() {
         let (mut infinite, mut subnormal) = (0, 0);

@@ -418,6 +418,53 @@ mod tests {
         assert!(0 < ties && ties < 64, "{ties}");
     }
 
+    /// Entries of few bits each, but with fractions of those of others: polynomials in them need not fit a double.
+    #[test]
+    fn small_numbers_of_different_scales_are_left_or_inverted_exactly() {
+        let (mut random, mut decided, mut left) = (Random::new(9), 0, 0);
+        for _ in 0..cases(100_000) {
+            let mut number = || random.whole(-2047, 2047) * 2f64.powi(random.integer(-6..1));
+            let mut column = || DVec3::new(number(), number(), number());
+            let (a, b) = (column(), column());
+            let scale = 2f64.powi(if random.one_in(2) { 6 } else { 0 });
+            let m = DMat3::from_cols(a.map(|x| (x * scale).trunc()), b, DVec3::ZERO);
+            match whole::pseudo_inverse(&m) {
+                Some(answer) => {
+                    assert_eq!(bits(&answer), bits(&integers::pseudo_inverse(&m)), "{m}");
+                    decided += 1;
+                }
+                None => left += 1,
+            }
+        }
+        assert!(decided > 10 && left > 500, "{decided} {left}");
+    }
+
+    #[test]
+    fn each_stage_decides_up_to_the_ends_of_its_range() {
+        let m = DMat3::from_cols(DVec3::new(1.1, 1.2, 1.9), DVec3::new(1.3, 1.7, -1.1), DVec3::new(1.8, -1.4, 1.5));
+        let inverse = |k: i32| regular::inverse::<false, false>(&(m * 2f64.powi(k)).to_cols_array()).is_some();
+        assert_eq!([-103, -99, 98, 102].map(inverse), [false, true, true, false]);
+
+        // Far from 1 a matrix is scaled, if no entry is far smaller than another.
+        let rescales = |k: i32| rescaled(&(m * 2f64.powi(k)), pseudo_inverse).is_some();
+        assert_eq!([-94, -88, 87, 93].map(rescales), [true, false, false, true]);
+        let tiny = |k: i32| {
+            let mut m = m * 2f64.powi(300);
+            m.x_axis.y = 2f64.powi(300 - k);
+            rescaled(&m, pseudo_inverse).is_some()
+        };
+        assert_eq!([97, 103].map(tiny), [true, false]);
+
+        // Small whole numbers of any size, unless a quotient may be subnormal.
+        let small = DMat3::from_cols(DVec3::new(3.0, 1.0, 0.0), DVec3::new(1.0, 5.0, 2.0), DVec3::new(0.0, 2.0, 7.0));
+        let decides = |k: i32| whole::pseudo_inverse(&(small * 2f64.powi(k))).is_some();
+        assert_eq!([-1074, 900, 912, 1010].map(decides), [true, true, false, false]);
+        for k in 890..1020 {
+            let m = small * 2f64.powi(k);
+            assert_eq!(bits(&pseudo_inverse(m)), bits(&integers::pseudo_inverse(&m)), "{m}");
+        }
+    }
+
     fn bits(answer: &PseudoInverse) -> (usize, [u64; 9]) {
         (answer.rank, answer.matrix.to_cols_array().map(f64::to_bits))
     }
