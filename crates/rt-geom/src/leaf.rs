@@ -10,7 +10,8 @@ use fearless_simd::{Simd, f64x8};
 use rt_math::Roots;
 
 use crate::crossings::{self, Pass};
-use crate::ray::{Candidate, LaneCandidates, LaneHits, PreparedRay, RayLanes, holds};
+use crate::lanes::{LaneCandidates, PencilLanes, RayLanes, lanes};
+use crate::ray::{Candidate, PreparedRay, holds};
 use crate::simd::{has_fma, prefetch_lines};
 use crate::{Hit, Ray, Shape, Side, Sphere, Triangle};
 
@@ -20,10 +21,23 @@ pub(crate) trait Leaf: Copy + PartialEq + Send + Sync {
     fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate>;
 
     /// The same for eight rays with one origin, as far as a filter decides.
-    fn lane_candidates<S: Simd>(&self, simd: S, rays: &RayLanes<S>, range: (f64, f64)) -> LaneCandidates<S>;
+    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S>;
 
-    /// The correctly rounded `t` of eight hits, each with the shape that it is on, and in which lanes it is certain.
-    fn lane_roundings<const FMA: bool, S: Simd>(simd: S, shapes: [&Self; 8], hits: &LaneHits<S>) -> (f64x8<S>, u64);
+    /// The same for eight rays, each with a shape, as far as a filter decides.
+    fn lane_candidates<S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        range: (f64, f64),
+    ) -> LaneCandidates<S>;
+
+    /// The correctly rounded `t` of eight hits with bounds, each with its shape, and in which lanes it is certain.
+    fn lane_roundings<const FMA: bool, S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        bounds: (f64x8<S>, f64x8<S>),
+    ) -> (f64x8<S>, u64);
 
     /// Whether the range holds a hit.
     fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool;
@@ -58,13 +72,28 @@ impl Leaf for Sphere {
     }
 
     #[inline(always)]
-    fn lane_candidates<S: Simd>(&self, simd: S, rays: &RayLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
-        self.lane_candidates(simd, rays, range)
+    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
+        self.pencil_candidates(simd, rays, range)
     }
 
     #[inline(always)]
-    fn lane_roundings<const FMA: bool, S: Simd>(simd: S, shapes: [&Self; 8], hits: &LaneHits<S>) -> (f64x8<S>, u64) {
-        Self::lane_roundings::<FMA, S>(simd, shapes, hits)
+    fn lane_candidates<S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        range: (f64, f64),
+    ) -> LaneCandidates<S> {
+        Self::lane_candidates(simd, shapes, rays, range)
+    }
+
+    #[inline(always)]
+    fn lane_roundings<const FMA: bool, S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        bounds: (f64x8<S>, f64x8<S>),
+    ) -> (f64x8<S>, u64) {
+        Self::lane_roundings::<FMA, S>(simd, shapes, rays, bounds)
     }
 
     #[inline(always)]
@@ -109,13 +138,28 @@ impl Leaf for Triangle {
     }
 
     #[inline(always)]
-    fn lane_candidates<S: Simd>(&self, simd: S, rays: &RayLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
-        self.lane_candidates(simd, rays, range)
+    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
+        self.pencil_candidates(simd, rays, range)
     }
 
     #[inline(always)]
-    fn lane_roundings<const FMA: bool, S: Simd>(simd: S, shapes: [&Self; 8], hits: &LaneHits<S>) -> (f64x8<S>, u64) {
-        Self::lane_roundings::<FMA, S>(simd, shapes, hits)
+    fn lane_candidates<S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        range: (f64, f64),
+    ) -> LaneCandidates<S> {
+        Self::lane_candidates(simd, shapes, rays, range)
+    }
+
+    #[inline(always)]
+    fn lane_roundings<const FMA: bool, S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        _: (f64x8<S>, f64x8<S>),
+    ) -> (f64x8<S>, u64) {
+        Self::lane_roundings::<FMA, S>(simd, shapes, rays)
     }
 
     #[inline(always)]
@@ -247,6 +291,13 @@ pub(crate) trait Query {
         false
     }
 
+    /// Whether a candidate is all that the query wants of a primitive.
+    const TAKES_CANDIDATES: bool = false;
+
+    /// Meets a primitive of which this is the candidate.
+    #[inline(always)]
+    fn offer(&mut self, _: Candidate, _: usize, _: &Leaves, _: &PreparedRay) {}
+
     /// Meets the primitive at `place`.
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay);
 
@@ -269,6 +320,13 @@ impl Query for Any {
     #[inline(always)]
     fn is_settled(&self) -> bool {
         self.0
+    }
+
+    const TAKES_CANDIDATES: bool = true;
+
+    #[inline(always)]
+    fn offer(&mut self, _: Candidate, _: usize, _: &Leaves, _: &PreparedRay) {
+        self.0 = true;
     }
 
     #[inline(always)]
@@ -316,14 +374,22 @@ impl Query for Closest {
         self.bounds.high
     }
 
+    const TAKES_CANDIDATES: bool = true;
+
     #[inline(always)]
-    fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
-        let Some(bounds) = leaf.candidate::<FMA>(ray, self.limit()) else { return };
+    fn offer(&mut self, bounds: Candidate, place: usize, leaves: &Leaves, ray: &PreparedRay) {
         if bounds.high < self.bounds.low {
             *self = Self { bounds, place };
             prefetch_lines(leaves.index.as_ptr().wrapping_add(place), 1);
         } else if bounds.low <= self.bounds.high {
             self.settle(bounds, place, leaves, ray);
+        }
+    }
+
+    #[inline(always)]
+    fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
+        if let Some(bounds) = leaf.candidate::<FMA>(ray, self.limit()) {
+            self.offer(bounds, place, leaves, ray);
         }
     }
 
@@ -355,11 +421,12 @@ fn finish_those_on<S: Simd, L: Leaf>(simd: S, shapes: &[L], first: usize, best: 
     if open == 0 {
         return;
     }
-    let hits = LaneHits::new(simd, rays, best.map(|best| best.bounds));
+    let rays = RayLanes::new(simd, rays);
+    let bounds = (lanes(simd, best.each_ref(), |b| b.bounds.low), lanes(simd, best.each_ref(), |b| b.bounds.high));
     let (t, certain) = if has_fma(simd) {
-        L::lane_roundings::<true, S>(simd, on, &hits)
+        L::lane_roundings::<true, S>(simd, on, &rays, bounds)
     } else {
-        L::lane_roundings::<false, S>(simd, on, &hits)
+        L::lane_roundings::<false, S>(simd, on, &rays, bounds)
     };
     let t: [f64; 8] = t.into();
     for (lane, (best, t)) in best.iter_mut().zip(t).enumerate() {
@@ -407,26 +474,33 @@ mod tests {
     use crate::simd::dispatch;
 
     #[inline(always)]
-    fn lanes<S: Simd, L: Leaf>(simd: S, leaf: &L, rays: &[Ray; 8], range: (f64, f64)) -> (u64, u64, [[f64; 8]; 2]) {
+    fn pencil<S: Simd, L: Leaf>(simd: S, leaf: &L, rays: &[Ray; 8], range: (f64, f64)) -> (u64, u64, [[f64; 8]; 2]) {
         let numbers = |number: &dyn Fn(&Ray) -> f64| f64x8::from_slice(simd, &rays.each_ref().map(number));
-        let rays = RayLanes {
+        let rays = PencilLanes {
             origin: rays[0].origin(),
             direction: [0, 1, 2].map(|axis| numbers(&|ray| ray.direction()[axis])),
             reach: numbers(&Ray::reach),
             square: numbers(&Ray::square),
             inverse_square: numbers(&Ray::inverse_square),
         };
-        let found = leaf.lane_candidates(simd, &rays, range);
+        let found = leaf.pencil_candidates(simd, &rays, range);
+        (found.none, found.some, [found.low.into(), found.high.into()])
+    }
+
+    #[inline(always)]
+    fn each<S: Simd, L: Leaf>(simd: S, leaf: &L, rays: &[Ray; 8], range: (f64, f64)) -> (u64, u64, [[f64; 8]; 2]) {
+        let found = L::lane_candidates(simd, [leaf; 8], &RayLanes::new(simd, rays.each_ref()), range);
         (found.none, found.some, [found.low.into(), found.high.into()])
     }
 
     #[inline(always)]
     fn rounded<S: Simd, L: Leaf>(simd: S, leaf: &L, rays: &[Ray; 8], bounds: [Candidate; 8]) -> ([f64; 8], u64) {
-        let hits = LaneHits::new(simd, rays.each_ref(), bounds);
+        let rays = RayLanes::new(simd, rays.each_ref());
+        let bounds = (lanes(simd, bounds.each_ref(), |b| b.low), lanes(simd, bounds.each_ref(), |b| b.high));
         let (t, certain) = if has_fma(simd) {
-            L::lane_roundings::<true, S>(simd, [leaf; 8], &hits)
+            L::lane_roundings::<true, S>(simd, [leaf; 8], &rays, bounds)
         } else {
-            L::lane_roundings::<false, S>(simd, [leaf; 8], &hits)
+            L::lane_roundings::<false, S>(simd, [leaf; 8], &rays, bounds)
         };
         (t.into(), certain)
     }
@@ -451,14 +525,17 @@ mod tests {
         let ends = [f64::INFINITY, 1.0 / length, (1.0 / length).next_up()];
         for (start, end) in [(0.0, random.pick(&ends)), (1.0 / length, f64::INFINITY)] {
             for level in [Level::new(), Level::baseline()] {
-                let (none, some, [low, high]) = dispatch!(level, simd => lanes(simd, leaf, &rays, (start, end)));
-                for (lane, ray) in rays.iter().enumerate() {
-                    let t = closest(ray, start..end);
-                    let (none, some) = (none >> lane & 1 == 1, some >> lane & 1 == 1);
-                    assert!(!none || t.is_none(), "{level:?} {ray:?} {start} {end} {t:?}");
-                    let holds = t.is_some_and(|t| low[lane] <= t && t <= high[lane]);
-                    assert!(!some || holds, "{level:?} {ray:?} {start} {end} {t:?} {low:?} {high:?}");
-                    count[if none { 0 } else { 2 - usize::from(some) }] += 1;
+                let pencil = dispatch!(level, simd => pencil(simd, leaf, &rays, (start, end)));
+                let each = dispatch!(level, simd => each(simd, leaf, &rays, (start, end)));
+                for (none, some, [low, high]) in [pencil, each] {
+                    for (lane, ray) in rays.iter().enumerate() {
+                        let t = closest(ray, start..end);
+                        let (none, some) = (none >> lane & 1 == 1, some >> lane & 1 == 1);
+                        assert!(!none || t.is_none(), "{level:?} {ray:?} {start} {end} {t:?}");
+                        let holds = t.is_some_and(|t| low[lane] <= t && t <= high[lane]);
+                        assert!(!some || holds, "{level:?} {ray:?} {start} {end} {t:?} {low:?} {high:?}");
+                        count[if none { 0 } else { 2 - usize::from(some) }] += 1;
+                    }
                 }
                 let none = Candidate { low: f64::NAN, high: f64::NAN };
                 let bounds = rays.each_ref().map(|ray| {

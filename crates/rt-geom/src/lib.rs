@@ -25,6 +25,7 @@ mod bvh;
 mod crossings;
 mod enclosing;
 mod hilbert;
+mod lanes;
 mod leaf;
 mod plane;
 mod questions;

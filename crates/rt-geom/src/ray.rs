@@ -3,7 +3,6 @@
 use std::fmt;
 use std::ops::Range;
 
-use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 use rt_math::exact::power_of_two;
 
@@ -220,99 +219,6 @@ impl Candidate {
     pub(crate) fn exact(t: Option<f64>, limit: f64) -> Option<Self> {
         t.filter(|&t| t <= limit).map(|t| Self { low: t, high: t })
     }
-}
-
-/// Eight rays with one origin, a quantity a vector.
-pub(crate) struct RayLanes<S: Simd> {
-    pub(crate) origin: DVec3,
-    pub(crate) direction: [f64x8<S>; 3],
-    /// As [`Ray`] has them.
-    pub(crate) reach: f64x8<S>,
-    pub(crate) square: f64x8<S>,
-    pub(crate) inverse_square: f64x8<S>,
-}
-
-impl<S: Simd> RayLanes<S> {
-    /// `v . d` in plain doubles.
-    #[inline(always)]
-    pub(crate) fn dot(&self, v: DVec3) -> f64x8<S> {
-        let [x, y, z] = self.direction;
-        x.mul_add(v.x, y.mul_add(v.y, z * v.z))
-    }
-
-    /// `d x v` in plain doubles.
-    #[inline(always)]
-    pub(crate) fn cross(&self, v: DVec3) -> [f64x8<S>; 3] {
-        let [x, y, z] = self.direction;
-        [y.mul_sub(v.z, z * v.y), z.mul_sub(v.x, x * v.z), x.mul_sub(v.y, y * v.x)]
-    }
-}
-
-/// What a filter says about eight rays and a shape. Rays that it neither rules out nor gives a candidate are for
-/// [`candidate`](crate::leaf::Leaf::candidate) to decide.
-pub(crate) struct LaneCandidates<S: Simd> {
-    pub(crate) low: f64x8<S>,
-    pub(crate) high: f64x8<S>,
-    /// As bits: the rays that surely have no hit in the range, and those of which the bounds are a [`Candidate`]'s.
-    pub(crate) none: u64,
-    pub(crate) some: u64,
-}
-
-/// Eight hits of rays of any origin, each with bounds of its `t`.
-pub(crate) struct LaneHits<S: Simd> {
-    pub(crate) origin: [f64x8<S>; 3],
-    pub(crate) direction: [f64x8<S>; 3],
-    /// As [`Ray`] has them.
-    pub(crate) reach: f64x8<S>,
-    pub(crate) square: f64x8<S>,
-    pub(crate) inverse_square: f64x8<S>,
-    pub(crate) low: f64x8<S>,
-    pub(crate) high: f64x8<S>,
-}
-
-impl<S: Simd> LaneHits<S> {
-    #[inline(always)]
-    pub(crate) fn new(simd: S, rays: [&Ray; 8], bounds: [Candidate; 8]) -> Self {
-        Self {
-            origin: [
-                lanes(simd, rays, |ray| ray.origin.x),
-                lanes(simd, rays, |ray| ray.origin.y),
-                lanes(simd, rays, |ray| ray.origin.z),
-            ],
-            direction: [
-                lanes(simd, rays, |ray| ray.direction.x),
-                lanes(simd, rays, |ray| ray.direction.y),
-                lanes(simd, rays, |ray| ray.direction.z),
-            ],
-            reach: lanes(simd, rays, |ray| ray.reach),
-            square: lanes(simd, rays, |ray| ray.square),
-            inverse_square: lanes(simd, rays, |ray| ray.inverse_square),
-            low: lanes(simd, bounds.each_ref(), |bounds| bounds.low),
-            high: lanes(simd, bounds.each_ref(), |bounds| bounds.high),
-        }
-    }
-}
-
-/// A number of each of eight things.
-#[inline(always)]
-pub(crate) fn lanes<S: Simd, T>(simd: S, things: [&T; 8], number: impl Fn(&T) -> f64) -> f64x8<S> {
-    let mut numbers = [0.0; 8];
-    for (lane, thing) in numbers.iter_mut().zip(things) {
-        *lane = number(thing);
-    }
-    f64x8::from_slice(simd, &numbers)
-}
-
-/// `v x w` in every lane, in plain doubles.
-#[inline(always)]
-pub(crate) fn cross_lanes<S: Simd>(v: &[f64x8<S>; 3], w: &[f64x8<S>; 3]) -> [f64x8<S>; 3] {
-    [v[1].mul_sub(w[2], v[2] * w[1]), v[2].mul_sub(w[0], v[0] * w[2]), v[0].mul_sub(w[1], v[1] * w[0])]
-}
-
-/// `v . w` in every lane, in plain doubles.
-#[inline(always)]
-pub(crate) fn dot_lanes<S: Simd>(v: &[f64x8<S>; 3], w: &[f64x8<S>; 3]) -> f64x8<S> {
-    v[0].mul_add(w[0], v[1].mul_add(w[1], v[2] * w[2]))
 }
 
 /// What a filter in plain doubles says about a line and a shape.

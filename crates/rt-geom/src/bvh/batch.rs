@@ -15,8 +15,9 @@ use super::crown::Tour;
 use super::cull::{CullRay, box_keys};
 use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
 use super::walk::{Areas, meet, next_region};
+use crate::lanes::RayLanes;
 use crate::leaf::{Closest, Query, finish};
-use crate::ray::{PreparedRay, is_open};
+use crate::ray::{Candidate, PreparedRay, is_open};
 use crate::simd::prefetch_lines;
 use crate::{Ray, Sphere, Triangle, Visits};
 
@@ -153,8 +154,8 @@ pub(super) fn fly<S: Simd, Q: Query>(
     let (mut spheres, mut triangles) = (Survivors::NONE, Survivors::NONE);
     while flying > 0 {
         // What the cull left in the last round.
-        spheres.meet::<S, Q, Sphere>(simd, tree, &mut slots);
-        triangles.meet::<S, Q, Triangle>(simd, tree, &mut slots);
+        spheres.meet::<S, Q, Sphere>(simd, tree, &mut slots, within);
+        triangles.meet::<S, Q, Triangle>(simd, tree, &mut slots, within);
         // In a loop of its own: the loads of one slot need not wait for the stores of another.
         let (resumed, len) = lists.take(RESUME);
         for &at in &resumed[..len] {
@@ -336,18 +337,45 @@ impl Survivors {
 
     /// Hands all to the queries of their slots. A slot's survivors follow each other.
     #[inline(always)]
-    fn meet<S: Simd, Q: Query, L: Blocked>(&mut self, simd: S, tree: &Bvh, slots: &mut [Slot<Q>]) {
+    fn meet<S: Simd, Q: Query, L: Blocked>(
+        &mut self,
+        simd: S,
+        tree: &Bvh,
+        slots: &mut [Slot<Q>],
+        Range { start, end }: &Range<f64>,
+    ) {
         let len = std::mem::take(&mut self.len);
-        for i in 0..len {
-            let (place, at) = (self.places[i] as usize, self.slots[i] as usize);
-            let slot = &mut slots[at];
-            let before = slot.query.limit();
-            meet::<S, Q, L>(simd, &mut slot.query, place, &tree.leaves, &slot.ray);
-            if slot.query.is_settled() {
-                slot.height = 0;
+        for first in (0..len).step_by(EIGHT) {
+            let count = EIGHT.min(len - first);
+            let places: [usize; EIGHT] = std::array::from_fn(|lane| self.places[first + lane.min(count - 1)] as usize);
+            let at: [usize; EIGHT] = std::array::from_fn(|lane| self.slots[first + lane.min(count - 1)] as usize);
+            let (mut none, mut some, mut low, mut high) = (0, 0, [0.0; EIGHT], [0.0; EIGHT]);
+            if Q::TAKES_CANDIDATES {
+                let shapes = places.map(|place| &L::of(&tree.leaves)[place]);
+                let rays = RayLanes::new(simd, at.map(|at| slots[at].ray.ray));
+                let found = L::lane_candidates(simd, shapes, &rays, (*start, *end));
+                (none, some) = (found.none, found.some);
+                found.low.store_slice(&mut low);
+                found.high.store_slice(&mut high);
             }
-            if slot.query.limit() < before {
-                slot.line.shorten(slot.query.limit());
+            for lane in 0..count {
+                if none >> lane & 1 == 1 {
+                    continue;
+                }
+                let slot = &mut slots[at[lane]];
+                let before = slot.query.limit();
+                if some >> lane & 1 == 1 {
+                    let bounds = Candidate { low: low[lane], high: high[lane] };
+                    slot.query.offer(bounds, L::first_place(&tree.leaves) + places[lane], &tree.leaves, &slot.ray);
+                } else {
+                    meet::<S, Q, L>(simd, &mut slot.query, places[lane], &tree.leaves, &slot.ray);
+                }
+                if slot.query.is_settled() {
+                    slot.height = 0;
+                }
+                if slot.query.limit() < before {
+                    slot.line.shorten(slot.query.limit());
+                }
             }
         }
     }

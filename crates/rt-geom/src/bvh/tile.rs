@@ -17,8 +17,9 @@ use super::Bvh;
 use super::cull::{LINE_ERROR, MAX_INVERSE, Slab, U, across, bits, load, slabs};
 use super::node::{Balls, Block, Blocked, Boxes, Frame, Kind, Lanes, WIDTH, up};
 use super::walk::{Areas, Pending, child, nearest, pending};
+use crate::lanes::PencilLanes;
 use crate::leaf::{Closest, Leaves, Query, finish};
-use crate::ray::{Candidate, PreparedRay, RayLanes};
+use crate::ray::{Candidate, PreparedRay};
 use crate::simd::{has_fma, prefetch_lines};
 use crate::{Hit, Ray};
 
@@ -60,6 +61,9 @@ pub(super) struct Tile {
     count: usize,
     /// How wide a tile pays, in cull coordinates.
     widest: f32,
+    /// What there is to be culled.
+    has_balls: bool,
+    has_boxes: bool,
     /// Tests of bounds so far.
     work: u32,
     /// In f32 and cull coordinates: the origin, unit directions and their reciprocals, and the parameters up to which
@@ -91,10 +95,11 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// For [`set`](Self::set) to fill, in a tree of this many primitives.
+    /// For [`set`](Self::set) to fill, in a tree of so many primitives.
     #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "no answer depends on it")]
-    pub(super) fn new(count: usize) -> Self {
-        Self { widest: WIDEST / (count as f64).cbrt() as f32, ..Self::EMPTY }
+    pub(super) fn new(spheres: usize, triangles: usize) -> Self {
+        let widest = WIDEST / ((spheres + triangles) as f64).cbrt() as f32;
+        Self { widest, has_balls: spheres > 0, has_boxes: triangles > 0, ..Self::EMPTY }
     }
 
     const EMPTY: Self = {
@@ -102,6 +107,8 @@ impl Tile {
         Self {
             count: 0,
             widest: 0.0,
+            has_balls: true,
+            has_boxes: true,
             work: 0,
             origin: Vec3::ZERO,
             along: [[zero; 3]; GROUPS],
@@ -191,8 +198,12 @@ impl Tile {
             self.near[axis] = (near, from, -((o + side) * from));
             self.far[axis] = (far, to, -((o - side) * to));
         }
-        self.invert(simd);
-        self.surround(simd, reach, Vec3::from(least) + Vec3::from(greatest));
+        if self.has_boxes {
+            self.invert(simd);
+        }
+        if self.has_balls {
+            self.surround(simd, reach, Vec3::from(least) + Vec3::from(greatest));
+        }
         for group in 0..self.groups() {
             self.shorten(simd, group, end, reach);
         }
@@ -338,9 +349,9 @@ impl Tile {
 
     /// Eight rays for the filters.
     #[inline(always)]
-    fn lanes<S: Simd>(&self, simd: S, at: usize) -> RayLanes<S> {
+    fn lanes<S: Simd>(&self, simd: S, at: usize) -> PencilLanes<S> {
         let [x, y, z] = &self.direction;
-        RayLanes {
+        PencilLanes {
             origin: self.origin64,
             direction: [eight(simd, x, at), eight(simd, y, at), eight(simd, z, at)],
             reach: eight(simd, &self.reach, at),
@@ -561,7 +572,7 @@ fn offer<S: Simd, L: Blocked>(
         if wanted == 0 {
             continue;
         }
-        let found = leaf.lane_candidates(simd, &tile.lanes(simd, at), (within.start, within.end));
+        let found = leaf.pencil_candidates(simd, &tile.lanes(simd, at), (within.start, within.end));
         let mut open = wanted & !found.none & !found.some;
         if wanted & found.some != 0 {
             let (low, high) = (eight(simd, &tile.low, at), eight(simd, &tile.high, at));
@@ -629,7 +640,7 @@ mod tests {
     #[inline(always)]
     fn near<S: Simd, B: TileBlock>(simd: S, frame: &Frame, rays: &[Ray], block: &B, ends: &[f64]) -> Option<[u64; 16]> {
         let order: Vec<usize> = (0..rays.len()).collect();
-        let mut tile = Tile::new(1);
+        let mut tile = Tile::new(1, 1);
         if !tile.set(simd, frame, rays, &order, f64::INFINITY) {
             return None;
         }

@@ -66,7 +66,7 @@ pub(super) fn closest_batch<S: Simd>(
         fly::<S, Closest>(simd, tree, rays, None, within, answers);
         return;
     }
-    let mut tile = Tile::new(tree.len());
+    let mut tile = Tile::new(tree.leaves.spheres.len(), tree.leaves.triangles.len());
     let mut stack = vec![0; tree.stack];
     let mut alone = Vec::new();
     let mut judge = Judge::HOPEFUL;
@@ -226,7 +226,8 @@ mod tests {
     #[inline(always)]
     fn attempt<S: Simd>(simd: S, tree: &Bvh, rays: &[Ray], most: u32) -> Option<u32> {
         let order: Vec<usize> = (0..rays.len()).collect();
-        let (mut tile, mut stack) = (Tile::new(tree.len()), vec![0; tree.stack]);
+        let (mut tile, mut stack) =
+            (Tile::new(tree.leaves.spheres.len(), tree.leaves.triangles.len()), vec![0; tree.stack]);
         let answers = &mut vec![None; rays.len()];
         let whole = (&mut tile, &mut stack[..]);
         match closest(simd, tree, whole, (rays, &order), &AHEAD, answers, most) {
