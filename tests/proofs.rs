@@ -179,6 +179,38 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "SurfaceFinish",
+        &[
+            ("RESIDUAL_ERROR", "rt-geom/src/surface/finish.rs", "const RESIDUAL_ERROR: f64 = ", ";"),
+            ("SLOPE_ERROR", "rt-geom/src/surface/finish.rs", "const SLOPE_ERROR: f64 = ", ";"),
+            ("DELTA_ERROR", "rt-geom/src/surface/finish.rs", "const DELTA_ERROR: f64 = ", ";"),
+            ("CERTAIN", "rt-geom/src/surface/finish.rs", "!(delta > ", " * delta_error)"),
+            ("ROOT_ERROR", "rt-geom/src/surface/finish.rs", "let sqrt_error = ", " * delta_error / sqrt"),
+            ("ROOT_ROUNDING", "rt-geom/src/surface/finish.rs", "delta_error / sqrt + ", " * sqrt;"),
+            ("LARGE_FACTOR", "rt-geom/src/surface/finish.rs", "let large = (sum / a, ", " * (sum_error / a)"),
+            ("LARGE_ROUNDING", "rt-geom/src/surface/finish.rs", "(sum_error / a) + ", " * (sum / a))"),
+            ("SMALL_FACTOR", "rt-geom/src/surface/finish.rs", "(f.abs() / sum, ", " * (f_error / sum"),
+            ("SMALL_ROUNDING", "rt-geom/src/surface/finish.rs", "(sum_error / sum)) + ", " * (f.abs() / sum))"),
+            ("HALF_BELOW", "rt-geom/src/surface/finish.rs", "near.0.abs() + near.1 < ", " * spacing"),
+            ("HALF_ABOVE", "rt-geom/src/surface/finish.rs", "near.0.abs() - near.1 > ", " * spacing"),
+            ("FARTHEST", "rt-geom/src/surface/finish.rs", "const FARTHEST: f64 = ", ";"),
+            ("UNDERFLOW", "rt-geom/src/surface/finish.rs", "const UNDERFLOW: f64 = ", ";"),
+        ],
+    ),
+    (
+        "SurfaceSide",
+        &[
+            ("HEIGHT_ERROR", "rt-geom/src/surface/finish.rs", "const HEIGHT_ERROR: f64 = ", ";"),
+            ("SLOPE_ERROR", "rt-geom/src/surface/finish.rs", "const SLOPE_ERROR: f64 = ", ";"),
+            ("CERTAIN_SLOPE", "rt-geom/src/surface/finish.rs", "!(slope.abs() > ", " * slope_error)"),
+            ("STEP_FACTOR", "rt-geom/src/surface/finish.rs", "let error = ", " * (height_error + step"),
+            ("STEP_ROUNDING", "rt-geom/src/surface/finish.rs", "/ slope.abs() + ", " * step.abs()"),
+            ("VECTOR_ERROR", "rt-geom/src/surface/finish.rs", "U * size + ", " * (size + way)"),
+            ("SIDE_ERROR", "rt-geom/src/surface/finish.rs", "normal.error * way.error + ", " * n * w)"),
+            ("UNDERFLOW", "rt-geom/src/surface/finish.rs", "const UNDERFLOW: f64 = ", ";"),
+        ],
+    ),
+    (
         "Triangle",
         &[
             ("SHORTEST", "rt-geom/src/triangle/mod.rs", "const SHORTEST: f64 = ", ";"),

@@ -911,3 +911,19 @@ Proof.
   assert (u * (24 * u * L) <= u * r) by (apply Rmult_le_compat_l; lra). lra.
 Qed.
 End Step.
+(* A vector of differences up to FARTHEST and a way up to FARTHEST times the direction is in the range of the dot products. *)
+Theorem FARTHEST_holds : forall o c t d n M, Rabs o <= FARTHEST -> Rabs c <= FARTHEST -> Rabs t <= FARTHEST -> Rabs d <= bp 100 ->
+  M = o - c + t * d -> Rabs (n - M) <= 6 * (u * u) * Rabs M + bp (-1060) -> Rabs n <= bp 402.
+Proof.
+  intros o c t d n M Ho Hc Ht Hd E H. unfold FARTHEST in *.
+  assert (B : Rabs M <= bp 401).
+  { rewrite E. apply Rle_trans with (bp 300 + bp 300 + bp 300 * bp 100); [apply Rabs_plus_le; [apply Rabs_minus_le | apply Rabs_mult_le]; assumption|].
+    rewrite <- bp_add. change (300 + 100)%Z with 400%Z. assert (bp 401 = 2 * bp 400) by (change 401%Z with (1 + 400)%Z; rewrite bp_add, bp_1; ring).
+    assert (bp 300 <= / 1000000000000 * bp 400) by (apply bp_part12; lia). pose proof (bp_pos 400). lra. }
+  assert (bp 402 = 2 * bp 401) by (change 402%Z with (1 + 401)%Z; rewrite bp_add, bp_1; ring).
+  assert (bp (-1060) <= / 1000000000000 * bp 401) by (apply bp_part12; lia). pose proof (bp_pos 401).
+  replace n with ((n - M) + M) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra.
+Qed.
+(* What underflows in a residual is below a part of 10^12 of UNDERFLOW. *)
+Theorem UNDERFLOW_holds : forall x y z, bp (low2 (tf 0 x y z)) <= / 1000000000000 * UNDERFLOW.
+Proof. intros. apply bp_part12. vm_compute. discriminate. Qed.
