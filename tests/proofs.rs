@@ -32,6 +32,18 @@ const FILES: &[File] = &[
     ),
     ("Candidates", &[("CANDIDATE", "rt-geom/src/sphere/finish.rs", "error: ((", " * self.error) * self.inverse_a)")]),
     (
+        "Color",
+        &[
+            ("POWER_FACTOR", "rt-shade/src/phong.rs", "let near = (", " * growth + "),
+            ("POWER_ROUNDING", "rt-shade/src/phong.rs", "* growth + ", ") * power + UNDERFLOW"),
+            ("LARGEST_GROWTH", "rt-shade/src/phong.rs", "(growth <= ", ") { near"),
+            ("WIDE_FACTOR", "rt-shade/src/phong.rs", "if shininess >= 1.0 { ", " * (alignment.abs() + error)"),
+            ("DIFFUSE_ROUNDING", "rt-shade/src/phong.rs", "(cosine_error + ", ") + surface_error"),
+            ("SUM_ROUNDINGS", "rt-shade/src/phong.rs", "(2 * lights + ", ") as f64 * U"),
+            ("UNDERFLOW", "rt-shade/src/phong.rs", "const UNDERFLOW: f64 = ", ";"),
+        ],
+    ),
+    (
         "Determinant",
         &[
             ("BOUND_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "let bound = ", " * U * (sum("),
@@ -59,6 +71,19 @@ const FILES: &[File] = &[
     (
         "ErrorFree",
         &[("LEAST_PRODUCT", "rt-math/src/exact/error_free.rs", "`a b` is zero or at least ", " in magnitude")],
+    ),
+    (
+        "Light",
+        &[
+            ("UNIT_ERROR", "rt-shade/src/phong.rs", "const UNIT_ERROR: f64 = ", ";"),
+            ("UNIT_FACTOR", "rt-shade/src/phong.rs", "{ 0.0 } else { ", " * error * inverse_length"),
+            ("INCIDENT_ERROR", "rt-shade/src/phong.rs", "const INCIDENT_ERROR: f64 = ", ";"),
+            ("LARGEST_ERROR", "rt-shade/src/phong.rs", "const LARGEST_ERROR: f64 = ", ";"),
+            ("COSINE_FACTOR", "rt-shade/src/phong.rs", "let error = ", " * (incident + normal) + COSINE_ROUNDING"),
+            ("COSINE_ROUNDING", "rt-shade/src/phong.rs", "const COSINE_ROUNDING: f64 = ", ";"),
+            ("ALIGNMENT_FACTOR", "rt-shade/src/phong.rs", "    ", " * (incident + 4.0 * normal) + ALIGNMENT_ROUNDING"),
+            ("ALIGNMENT_ROUNDING", "rt-shade/src/phong.rs", "const ALIGNMENT_ROUNDING: f64 = ", ";"),
+        ],
     ),
     (
         "Limbs",
@@ -148,6 +173,18 @@ const FILES: &[File] = &[
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     ("Single", &[("UNIT", "rt-geom/src/bvh/cull.rs", "const U: f32 = ", ";")]),
+    (
+        "Samples",
+        &[
+            ("PLACE_ROUNDING", "rt-shade/src/texture.rs", "(u_error + ", ") * width"),
+            ("BILINEAR_FACTOR", "rt-shade/src/texture.rs", "let error = ", " * (width * u_error + height * v_error)"),
+            ("BILINEAR_ROUNDINGS", "rt-shade/src/texture.rs", "3.0 * height + ", ") * U;"),
+            ("MIXED_FACTOR", "../figures/src/seen.rs", "interpolate(colors, weights), (", " * error + "),
+            ("MIXED_ROUNDING", "../figures/src/seen.rs", "* error + ", ") * brightest"),
+            ("BYTE_FACTOR", "../figures/src/certify.rs", "let slack = ", " * most * (error"),
+            ("BYTE_ROUNDINGS", "../figures/src/certify.rs", "(count + ", ") * U);"),
+        ],
+    ),
     (
         "Sphere",
         &[
