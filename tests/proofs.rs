@@ -147,6 +147,19 @@ const FILES: &[File] = &[
     ),
     ("Norm", &[]),
     (
+        "Points",
+        &[
+            ("AT_WAY", "rt-geom/src/ray.rs", "most `u (", " |t direction|"),
+            ("AT_POINT", "rt-geom/src/ray.rs", "|t direction| + ", " |point|)"),
+            ("SPHERE_NORMAL", "rt-geom/src/sphere/mod.rs", "Within `", " * 2^-53` of the exact unit vector"),
+            ("TRIANGLE_NORMAL", "rt-geom/src/triangle/mod.rs", "Within `", " * 2^-53` of the exact one in"),
+            ("HIT_NORMAL", "rt-geom/src/surface/mod.rs", "Within `", " * 2^-53` of the exact one, for"),
+            ("CERTAIN_NORMAL", "rt-geom/src/triangle/exact.rs", "max_abs(n) >= ", " * largest * largest"),
+            ("DIVISION", "rt-geom/src/surface/mod.rs", "sphere.radius() + ", " * U,"),
+            ("TAKEN", "rt-geom/src/surface/mod.rs", "normal.error <= ", " * U)"),
+        ],
+    ),
+    (
         "Polygon",
         &[(
             "TURN_ERROR",
