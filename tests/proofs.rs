@@ -183,6 +183,10 @@ const FILES: &[File] = &[
             ("LOPSIDED", "rt-math/src/quadratic.rs", "const LOPSIDED: i32 = ", ";"),
         ],
     ),
+    (
+        "QuadraticRoots",
+        &[("DOUBLE_DOUBLE_ERROR", "rt-math/src/quadratic.rs", "const DOUBLE_DOUBLE_ERROR: f64 = ", ";")],
+    ),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     ("Single", &[("UNIT", "rt-geom/src/bvh/cull.rs", "const U: f32 = ", ";")]),
