@@ -13,6 +13,7 @@ use std::str::Chars;
 type File = (&'static str, &'static [(&'static str, &'static str, &'static str, &'static str)]);
 
 const FILES: &[File] = &[
+    ("Balls", &[("BALL_SLACK", "rt-geom/src/bvh/cull.rs", "const BALL_SLACK: f32 = ", " * U;")]),
     (
         "Cancelling",
         &[
@@ -44,6 +45,15 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "Crown",
+        &[
+            ("PARAMETER_ERROR", "rt-geom/src/bvh/crown.rs", "const PARAMETER_ERROR: f64 = ", ";"),
+            ("UNDERFLOW", "rt-geom/src/bvh/crown.rs", "const UNDERFLOW: f64 = ", ";"),
+            ("FARTHEST", "rt-geom/src/bvh/crown.rs", "const FARTHEST: f64 = ", ";"),
+            ("SHORTEST", "rt-geom/src/bvh/crown.rs", "const SHORTEST: f64 = ", ";"),
+        ],
+    ),
+    (
         "Determinant",
         &[
             ("BOUND_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "let bound = ", " * U * (sum("),
@@ -72,6 +82,7 @@ const FILES: &[File] = &[
         "ErrorFree",
         &[("LEAST_PRODUCT", "rt-math/src/exact/error_free.rs", "`a b` is zero or at least ", " in magnitude")],
     ),
+    ("Frame", &[("COORDINATE_ERROR", "rt-geom/src/bvh/node.rs", "pub(super) const COORDINATE_ERROR: f64 = ", ";")]),
     (
         "Light",
         &[

@@ -79,8 +79,9 @@ Let along := p1 * w1 + p2 * w2 + p3 * w3.
 Let q1' := p1 - along * w1. Let q2' := p2 - along * w2. Let q3' := p3 - along * w3.
 Hypotheses (Hd1 : Rabs d1 <= bp 100) (Hd2 : Rabs d2 <= bp 100) (Hd3 : Rabs d3 <= bp 100) (Hlong : bp (-200) <= A)
   (Ho1 : Rabs o1 <= bp 45) (Ho2 : Rabs o2 <= bp 45) (Ho3 : Rabs o3 <= bp 45)
-  (Hp1 : Rabs (o1 - p1) <= u * Rabs o1 + bp (-52)) (Hp2 : Rabs (o2 - p2) <= u * Rabs o2 + bp (-52))
-  (Hp3 : Rabs (o3 - p3) <= u * Rabs o3 + bp (-52)).
+  (Hp1 : Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + bp (-52)) (Hp2 : Rabs (o2 - p2) <= (1
+    + / 1000) * u * Rabs o2 + bp (-52))
+  (Hp3 : Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + bp (-52)).
 (* as computed *)
 Variables S dot x1 x2 x3 : R.
 Let x d := X d 100. Let y o := X o 45.
@@ -195,6 +196,23 @@ Proof.
   rewrite u_val in *. lra.
 Qed.
 
+(* The direction in f32: what Balls.v takes for granted. *)
+Lemma direction_near : forall d, Rabs (RNs (RN (d * k)) - d / l) <= (1 + / 1000) * UNIT * Rabs (d / l) + bp (-130).
+Proof.
+  intro d. pose proof l_pos as L0. pose proof k_near as K. set (w := d / l).
+  assert (E : Rabs (d * k - w) <= (77 / 10) * u * Rabs w).
+  { replace (d * k - w) with ((k * l - 1) * w) by (unfold w; field; lra). rewrite Rabs_mult.
+    apply Rmult_le_compat_r; [apply Rabs_pos | assumption]. }
+  pose proof (rounded _ _ _ E) as R. pose proof (UNIT_holds (RN (d * k))) as E2. set (m := RN (d * k)) in *.
+  assert (T1 : bp (-1075) <= / 1000 * bp (-130)) by (apply Rle_trans with (bp (-10 + -130)); [apply bp_le; lia|];
+    rewrite bp_add; pose proof (bp_pos (-130)); simpl (bp (-10)); lra).
+  assert (T2 : bp (-150) <= / 1000 * bp (-130)) by (apply Rle_trans with (bp (-10 + -130)); [apply bp_le; lia|];
+    rewrite bp_add; pose proof (bp_pos (-130)); simpl (bp (-10)); lra).
+  pose proof (Rabs_pos w). pose proof (bp_pos (-130)). assert (M : Rabs m <= Rabs w + Rabs (m - w)).
+  { replace m with (w + (m - w)) at 1 by ring. apply Rabs_triang. }
+  replace (RNs m - w) with ((RNs m - m) + (m - w)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+  rewrite u_val, v_val in *. lra.
+Qed.
 Lemma D_top : u * D <= / 80.
 Proof.
   assert (D <= 105553116266497) by (unfold D; assert (bp 45 = 35184372088832) by (simpl; lra); lra).
@@ -338,9 +356,9 @@ Proof.
   set (e1 := o1 - p1) in *. set (e2 := o2 - p2) in *. set (e3 := o3 - p3) in *.
   assert (B52 : bp (-52) = 2 * u) by (unfold u; change (-52)%Z with (1 + -53)%Z; rewrite bp_add, bp_1; reflexivity).
   rewrite B52 in *.
-  assert (N2 : norm e1 e2 e3 <= u * (D - 1) + (35 / 10) * u).
+  assert (N2 : norm e1 e2 e3 <= (1 + / 1000) * u * (D - 1) + (35 / 10) * u).
   { eapply Rle_trans; [eapply norm_monotone; eassumption|]. eapply Rle_trans; [apply norm_triangle|].
-    rewrite norm_scaled, norm_abs, Rabs_pos_eq by (apply Rlt_le, u_pos). pose proof u_pos.
+    pose proof u_pos. rewrite norm_scaled, norm_abs, Rabs_pos_eq by lra.
     assert (norm (2 * u) (2 * u) (2 * u) <= 17321 / 10000 * (2 * u)) by (apply norm_equal; try lra; rewrite Rabs_pos_eq;
       lra).
     pose proof o_norm as O. assert (u * norm o1 o2 o3 <= u * (D - 1)) by (apply Rmult_le_compat_l; lra). lra. }
@@ -363,7 +381,7 @@ Proof.
   set (e1 := o1 - p1) in *. set (e2 := o2 - p2) in *. set (e3 := o3 - p3) in *.
   assert (B52 : bp (-52) = 2 * u) by (unfold u; change (-52)%Z with (1 + -53)%Z; rewrite bp_add, bp_1; reflexivity).
   rewrite B52 in *.
-  assert (N : Rabs (e1 * w1 + e2 * w2 + e3 * w3) <= u * (D - 1) + (35 / 10) * u).
+  assert (N : Rabs (e1 * w1 + e2 * w2 + e3 * w3) <= (1 + / 1000) * u * (D - 1) + (35 / 10) * u).
   { eapply Rle_trans; [apply dot_le|]. rewrite w_unit, Rmult_1_r.
     eapply Rle_trans; [eapply norm_monotone; eassumption|]. eapply Rle_trans; [apply norm_triangle|].
     rewrite norm_scaled, norm_abs, Rabs_pos_eq by lra.
@@ -564,8 +582,8 @@ Theorem LINE_ERROR_holds : forall o1 o2 o3 p1 p2 p3 d1 d2 d3 S dot x1 x2 x3 kapp
   let error := RN (RN (1 + RN (RN (Rabs o1 + Rabs o2) + Rabs o3)) * LINE_ERROR) in
   let tau := t' * (l * kappa) + along in
   Rabs d1 <= bp 100 -> Rabs d2 <= bp 100 -> Rabs d3 <= bp 100 -> bp (-200) <= d1 * d1 + d2 * d2 + d3 * d3 ->
-  Rabs (o1 - p1) <= u * Rabs o1 + bp (-52) -> Rabs (o2 - p2) <= u * Rabs o2 + bp (-52) ->
-  Rabs (o3 - p3) <= u * Rabs o3 + bp (-52) ->
+  Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + bp (-52) -> Rabs (o2 - p2) <= (1 + / 1000) * u * Rabs o2 + bp (-52) ->
+  Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + bp (-52) ->
   plain (tdot (X d1 100) (X d2 100) (X d3 100) (X d1 100) (X d2 100) (X d3 100)) S ->
   plain (tdot (X o1 45) (X o2 45) (X o3 45) (X d1 100) (X d2 100) (X d3 100)) dot ->
   Rabs (x1 - d1 * g) <= u * Rabs (d1 * g) + bp (-1075) -> Rabs (x2 - d2 * g) <= u * Rabs (d2 * g) + bp (-1075) ->
