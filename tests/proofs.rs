@@ -235,6 +235,14 @@ const FILES: &[File] = &[
     ),
     ("Steps", &[]),
     (
+        "SphereTree",
+        &[
+            ("MARGIN", "rt-geom/src/sphere_tree.rs", "const MARGIN: f64 = ", ";"),
+            ("UNDERFLOW", "rt-geom/src/sphere_tree.rs", "const UNDERFLOW: f64 = ", ";"),
+            ("LONGEST", "rt-geom/src/sphere_tree.rs", "const LONGEST: f64 = ", ";"),
+        ],
+    ),
+    (
         "SurfaceFilter",
         &[
             ("WAY_ERROR", "rt-geom/src/surface/filter.rs", "const WAY_ERROR: f64 = ", ";"),
