@@ -198,9 +198,14 @@ const FILES: &[File] = &[
         "QuadraticRoots",
         &[("DOUBLE_DOUBLE_ERROR", "rt-math/src/quadratic.rs", "const DOUBLE_DOUBLE_ERROR: f64 = ", ";")],
     ),
+        ],
+    ),
+    (
+    ("Reach", &[("REACH_ERROR", "rt-geom/src/enclosing/certify.rs", "const REACH_ERROR: f64 = ", ";")]),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     ("Single", &[("UNIT", "rt-geom/src/bvh/cull.rs", "const U: f32 = ", ";")]),
+    ("Spacing", &[("SPACING", "rt-geom/src/enclosing/certify.rs", "const SPACING: f64 = ", ";")]),
     (
         "Samples",
         &[
