@@ -156,6 +156,17 @@ const FILES: &[File] = &[
             ("VOLUME_ERROR", "rt-geom/src/triangle/locate.rs", "let error = ", " * (edge * edge) * far + UNDERFLOW;"),
         ],
     ),
+    ("Near", &[("NEAR_ERROR", "rt-geom/src/enclosing/mod.rs", "bracket.low * (1.0 - ", ") - shift.abs()")]),
+    (
+        "Nodes",
+        &[
+            ("NODE_ERROR", "rt-geom/src/enclosing/nodes.rs", "let limit = best.1 * (1.0 - ", ");"),
+            ("SETTLED", "rt-geom/src/enclosing/certify.rs", "if reach * (1.0 + ", ") <= radius {"),
+            ("ENCLOSED", "rt-geom/src/enclosing/certify.rs", "if rough < bracket.low * (1.0 - ", ") {"),
+            ("EXTREME", "rt-geom/src/enclosing/extreme.rs", "if reach > most * (1.0 - ", ") && !contains_exactly"),
+            ("BALANCED", "rt-geom/src/enclosing/nodes.rs", "pull.length() <= total * ", " && highest"),
+        ],
+    ),
     ("Norm", &[]),
     (
         "Points",
@@ -247,6 +258,7 @@ const FILES: &[File] = &[
             ("LONGEST", "rt-geom/src/sphere_tree.rs", "const LONGEST: f64 = ", ";"),
         ],
     ),
+    ("Step", &[("STEP_ERROR", "rt-geom/src/enclosing/certify.rs", "still.select(none, bend + ", " * length);")]),
     (
         "SurfaceFilter",
         &[

@@ -199,7 +199,8 @@ fn many_spheres<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
 fn near(tangent: &Tangent<f64>, bracket: &Bracket, spheres: &[Sphere], origin: DVec3) -> ([f64; 3], f64) {
     let (center, _) = tangent.sphere(spheres, origin);
     let shift = (bracket.center - origin) - DVec3::from(center);
-    (center, (bracket.low - shift.abs().element_sum()) * (1.0 - 64.0 * U))
+    // The margin is a share of the radius, however far the center has moved.
+    (center, bracket.low * (1.0 - 64.0 * U) - shift.abs().element_sum())
 }
 
 /// Whether the gap between the radius and its lower bound is more than what rounding the center to doubles costs.
