@@ -215,6 +215,15 @@ const FILES: &[File] = &[
     ("Reach", &[("REACH_ERROR", "rt-geom/src/enclosing/certify.rs", "const REACH_ERROR: f64 = ", ";")]),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
+    (
+        "Scan",
+        &[
+            ("REACH_ERROR", "rt-geom/src/enclosing/scan.rs", "const REACH_ERROR: f64 = ", ";"),
+            ("MEASURE_ERROR", "rt-geom/src/enclosing/scan.rs", "const MEASURE_ERROR: f64 = ", ";"),
+            ("SKIPPED", "rt-geom/src/enclosing/scan.rs", "limit - self.way - ", " * (limit + self.way)"),
+            ("MAX_ROUNDS", "rt-geom/src/enclosing/scan.rs", "const MAX_ROUNDS: usize = ", ";"),
+        ],
+    ),
     ("Single", &[("UNIT", "rt-geom/src/bvh/cull.rs", "const U: f32 = ", ";")]),
     ("Spacing", &[("SPACING", "rt-geom/src/enclosing/certify.rs", "const SPACING: f64 = ", ";")]),
     (
