@@ -581,6 +581,18 @@ mod tests {
     }
 
     #[test]
+    fn the_filter_decides_up_to_the_ends_of_its_window() {
+        // D is 20 2^(2 k).
+        let is_filter = |k: i32| {
+            let power = 2f64.powi(k);
+            decisions();
+            check(power, 6.0 * power, 4.0 * power);
+            decisions()[Stage::Filter as usize] > 0
+        };
+        assert_eq!([-455, -451, 446, 450].map(is_filter), [false, true, true, false]);
+    }
+
+    #[test]
     fn roots_around_the_overflow_threshold_round_as_they_should() {
         let mut seen = [0; 2];
         check_class(25, |rng| {
@@ -710,6 +722,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_smallest_positive_root_is_neither_zero_nor_negative() {
+        let smallest = |a, b, c| solve_quadratic(a, b, c).smallest_positive();
+        assert_eq!([smallest(1.0, -1.0, -6.0), smallest(1.0, -5.0, 6.0)], [Some(3.0), Some(2.0)]);
+        assert_eq!([smallest(1.0, -2.0, 0.0), smallest(1.0, 2.0, 0.0)], [Some(2.0), None]);
+        assert_eq!([smallest(1.0, 3.0, 2.0), smallest(1.0, 0.0, 1.0), smallest(0.0, 1.0, 0.0)], [None; 3]);
+        assert_eq!([smallest(0.0, 2.0, -1.0), Roots::All.smallest_positive()], [Some(0.5), None]);
     }
 
     #[test]

@@ -148,7 +148,10 @@ fn without_anything_to_drop_the_answer_is_the_exact_one() {
             for rtol in [0.0, -1.0, f64::NEG_INFINITY, 1e-280] {
                 assert_eq!(bits(&pseudo_inverse_with_tolerance(m, rtol)), exact, "{name} {:?}", m.to_cols_array());
             }
-            assert_eq!(bits(&pseudo_inverse_with_tolerance(m, 1.0)), (0, [0; 9]), "{name} {:?}", m.to_cols_array());
+            for rtol in [1.0, 1.5, f64::INFINITY] {
+                let answer = bits(&pseudo_inverse_with_tolerance(m, rtol));
+                assert_eq!(answer, (0, [0; 9]), "{name} {rtol} {:?}", m.to_cols_array());
+            }
             assert!(pseudo_inverse_with_tolerance(m, f64::NAN).matrix.is_nan(), "{name}");
         }
     }

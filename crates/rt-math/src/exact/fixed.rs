@@ -658,4 +658,22 @@ mod tests {
         }
         assert!(cancelling > 1_000, "{cancelling}");
     }
+
+    /// Between a midpoint's bits and a last one there may be more zeros than any leading bits hold.
+    #[test]
+    fn a_single_bit_far_below_a_midpoint_decides_its_rounding() {
+        let one = Fixed::<1>::ONE;
+        for even in [0, 1] {
+            // 53 bits, of which the last is even or odd, and half of it.
+            let top = 1 << 62 | even << 10 | 1 << 9;
+            let [down, up] = [0, 2].map(|more| ((1u64 << 53) + 2 * even + more) as f64 / 2f64.powi(53));
+            let tie = if even == 0 { down } else { up };
+            for (rest, expected) in [([0; 3], tie), ([1, 0, 0], up), ([0, 1, 0], up), ([0, 0, 1], up)] {
+                let [a, b, c] = rest;
+                let number = Fixed([a, b, c, top]);
+                assert_eq!(Fixed::quotient(&number, &one, -254), expected, "{number:?}");
+                assert_eq!(Fixed::quotient(&-number, &one, -254), -expected, "{number:?}");
+            }
+        }
+    }
 }

@@ -201,6 +201,7 @@ mod tests {
     use oracle::{Random, cases, exact};
 
     use super::*;
+    use crate::exact::DoubleDouble;
 
     #[test]
     fn determinant_in_triple_precision_keeps_its_bound_however_small() {
@@ -227,5 +228,35 @@ mod tests {
             }
         }
         assert!(beyond_the_last_rounding > 100, "{beyond_the_last_rounding}");
+    }
+
+    /// Numerators whose quotient lies beside a midpoint, by so much of it: from where on is the rounding certain?
+    #[test]
+    fn a_quotient_is_certain_as_near_to_a_midpoint_as_its_bound_lets_it() {
+        let mut random = Random::new(7);
+        let mut seen = 0;
+        for _ in 0..cases(1_000_000) {
+            let s = random.within(1.0, 2.0);
+            let midpoint = DoubleDouble::<false>::sum(1.0 + random.share(), 0.5 * f64::EPSILON);
+            let (q, half) = (midpoint.high() + midpoint.low(), 0.5 * f64::EPSILON);
+            let exactly = DoubleDouble::<false>::product(q, s) + DoubleDouble::new(half * s);
+            // A low double that weighs little.
+            if exactly.low().abs() > U / 64.0 * exactly.high() {
+                continue;
+            }
+            seen += 1;
+            let certain = |off: f64, b: f64, eta: f64| {
+                let numerator = exactly + DoubleDouble::new(off * U * U * exactly.high());
+                let (h, l) = (numerator.high(), numerator.low());
+                let reciprocal = Reciprocal::<false>::new(s, 0.0, eta * U * U * s).expect("far from zero");
+                let (lower, upper) = reciprocal.times(h, l, (b * U * h).max(l.abs()));
+                lower == upper
+            };
+            // 16 u² to 32 u² for the reciprocal, 8 u b for what the numerator is off, and twice the share of s.
+            assert_eq!([4.0, 64.0].map(|off| certain(off, 0.0, 0.0)), [false, true], "{s} {q}");
+            assert_eq!([2048.0, 32768.0].map(|off| certain(off, 1024.0, 0.0)), [false, true], "{s} {q}");
+            assert_eq!([512.0, 8192.0].map(|off| certain(off, 0.0, 1024.0)), [false, true], "{s} {q}");
+        }
+        assert!(seen > 50, "{seen}");
     }
 }
