@@ -347,4 +347,49 @@ mod tests {
         let (u, v) = sphere_uv(DVec3::ZERO);
         assert!(u.is_nan() && v.is_nan(), "zero gave {u}, {v}");
     }
+
+    /// The bounds hold what an exact normal loses, and what the worst direction of an error does; neither is much more.
+    #[test]
+    fn coordinates_within_errors_are_bounded_and_hardly_more() {
+        let mut random = oracle::Random::new(5);
+        let (mut worst, mut sharpest) = (0.0f64, [0.0f64; 2]);
+        for _ in 0..oracle::cases(100_000) {
+            let normal = random.point();
+            let ((u, v), bounds) = texture_uv_within(normal * random.power(-300..300), 0.0, true);
+            for ((x, exact), bound) in [u, v].into_iter().zip(uv(normal)).zip([bounds.0, bounds.1]) {
+                let off = (oracle::exact(x) - exact).to_f64().value().abs();
+                assert!(off <= bound && bound < 2.0 * U, "{normal:?}: {x} is {off:e} off, {bound:e}");
+                worst = worst.max(off / bound);
+            }
+
+            let size = normal.length() * random.power(-30..-10);
+            let h = DVec3::new(normal.x, 0.0, normal.z);
+            let around = size * DVec3::new(-normal.z, 0.0, normal.x).normalize();
+            let along = size * (normal.y * h - h.length_squared() * DVec3::Y).normalize();
+            for (i, wrong) in [around, along].into_iter().enumerate() {
+                let (found, bounds) = texture_uv_within(normal + wrong, 1.000_001 * size, true);
+                let (off, bound) = [((found.0 - u).abs(), bounds.0), ((found.1 - v).abs(), bounds.1)][i];
+                // Across the seam `u` jumps; beside a pole it is not known.
+                if off < 0.5 && bound.is_finite() {
+                    assert!(off <= bound + 2.0 * U, "{normal:?} {wrong:?}: {off:e} off, {bound:e}");
+                    sharpest[i] = sharpest[i].max(off / bound);
+                    assert!(off > 0.9 * bound - 4.0 * U || bound > 1e-4, "{normal:?} {wrong:?}: {off:e}, {bound:e}");
+                }
+            }
+        }
+        assert!(worst > 0.4 && sharpest.iter().all(|&share| share > 0.9), "{worst} {sharpest:?}");
+    }
+
+    #[test]
+    fn coordinates_are_known_up_to_the_ends_that_the_proof_needs() {
+        let known = |normal: [f64; 3], error: f64| {
+            let (u, v) = texture_uv_within(DVec3::from_array(normal), error, false).1;
+            [u, v].map(f64::is_finite)
+        };
+        assert_eq!([0.06, 0.065].map(|error| known([1.0, 0.0, 0.0], error)), [[true; 2], [false; 2]]);
+        assert_eq!([1.1e-120, 0.9e-120].map(|h| known([h, 1.0, 0.0], 0.0)), [[true; 2], [false, true]]);
+        for length in [1e-320, 1e-150, 1e-99, 1e99, 1e150, f64::MAX] {
+            assert_eq!(known([length, length, 0.0], 0.0), [true; 2], "{length:e}");
+        }
+    }
 }

@@ -520,4 +520,37 @@ mod tests {
         let (_, (u, v)) = texture_uv_within(DVec3::Y, 0.0, false);
         assert!(is_unknown(u) && v < 1e-15);
     }
+
+    /// Beside the border of a texel, the rounded product of a coordinate and the size may lie on the other side of it.
+    #[test]
+    fn coordinates_beside_a_border_show_the_texel_of_their_exact_product() {
+        let mut random = Random::new(22);
+        let (mut open, mut rounding_would_err) = (0, 0);
+        for _ in 0..cases(100_000) {
+            let size = 2 + random.below(1000);
+            let samples = |size| (0..size).map(|k| u16::try_from(k).expect("small")).collect();
+            let row = Texture::new(size, 1, samples(size), u16::try_from(size).expect("small")).expect("grey");
+            let column = Texture::new(1, size, samples(size), u16::try_from(size).expect("small")).expect("grey");
+            let k = 1 + random.below(size - 1);
+            let border = k as f64 / size as f64;
+            for place in [border.next_down(), border, border.next_up()] {
+                let exact = whole((exact(place) * exact(size as f64)).floor().to_f64().value());
+                rounding_would_err += usize::from(whole(place * size as f64) != exact);
+                for (texture, at) in [(&row, (place, 0.5)), (&column, (0.5, place))] {
+                    match texture.nearest_within(at, (0.0, 0.0)) {
+                        Some(color) => assert_eq!(color.x, exact as f64 / size as f64, "{place} of {size}"),
+                        None => open += 1,
+                    }
+                }
+            }
+            // Some last places of the largest coordinate farther, each is known.
+            for (place, texel) in [(border - 8.0 * U, k - 1), (border + 8.0 * U, k)] {
+                for (texture, at) in [(&row, (place, 0.5)), (&column, (0.5, place))] {
+                    let color = texture.nearest_within(at, (0.0, 0.0)).expect("far from the border");
+                    assert_eq!(color.x, texel as f64 / size as f64, "{place} of {size}");
+                }
+            }
+        }
+        assert!(open > 1000 && rounding_would_err > 100, "{open} {rounding_would_err}");
+    }
 }
