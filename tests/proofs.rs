@@ -209,9 +209,6 @@ const FILES: &[File] = &[
         "QuadraticRoots",
         &[("DOUBLE_DOUBLE_ERROR", "rt-math/src/quadratic.rs", "const DOUBLE_DOUBLE_ERROR: f64 = ", ";")],
     ),
-        ],
-    ),
-    (
     ("Reach", &[("REACH_ERROR", "rt-geom/src/enclosing/certify.rs", "const REACH_ERROR: f64 = ", ";")]),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
