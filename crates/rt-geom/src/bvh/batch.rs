@@ -11,7 +11,7 @@ use std::ops::Range;
 use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::Bvh;
-use super::crown::Tour;
+use super::crown::{Line64, Tour};
 use super::cull::{CullRay, box_keys};
 use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
 use super::walk::{Areas, meet, next_region};
@@ -144,7 +144,8 @@ pub(super) fn fly<S: Simd, Q: Query>(
     let flight = FLIGHT.min(only.map_or(rays.len(), <[usize]>::len));
     let mut slots: Vec<Slot<Q>> = (0..flight).map(|i| Slot::new(&rays[0], within, i * depth)).collect();
     let mut stacks = Stacks { keys: vec![0; flight * depth], nodes: vec![0; flight * depth] };
-    let mut tours: Vec<Tour> = slots.iter().filter_map(|_| tree.crown.as_ref().map(Tour::new)).collect();
+    let tour = |slot: &Slot<Q>| tree.crown.as_ref().map(|crown| Tour::new(crown, Line64::new(&slot.ray)));
+    let mut tours: Vec<Tour> = slots.iter().filter_map(tour).collect();
     for (at, slot) in slots.iter_mut().enumerate() {
         if let Some(list) = launch(simd, slot, tours.get_mut(at), tree, within, &mut waiting, answers) {
             lists.push(list, at);
@@ -260,7 +261,7 @@ fn launch<'a, S: Simd, Q: Query>(
         slot.query = Q::begin(&mut answers[target]);
         slot.target = target;
         if let (Some(tour), Some(crown)) = (&mut tour, &tree.crown) {
-            tour.begin(crown, &slot.ray);
+            tour.begin(crown, Line64::new(&slot.ray));
             if let Some(list) = travel(simd, slot, tour, tree) {
                 return Some(list);
             }

@@ -6,14 +6,12 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, Simd, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 use rt_math::exact::{U, power_of_two};
 
 use super::node::WIDTH;
-use crate::leaf::Query;
-use crate::ray::PreparedRay;
-use crate::simd::dispatch;
+use crate::ray::{PreparedRay, larger, smaller};
 use crate::{Sphere, Triangle, Visits};
 
 /// The rounding errors of a parameter, relative to it.
@@ -87,6 +85,8 @@ struct Node {
 #[derive(Clone, Debug)]
 pub(super) struct Crown {
     nodes: Vec<Node>,
+    /// All that is in it.
+    bounds: Box64,
     root: Part,
     /// How many pending entries a walk can need.
     stack: usize,
@@ -94,7 +94,7 @@ pub(super) struct Crown {
 
 impl Default for Crown {
     fn default() -> Self {
-        Self { nodes: Vec::new(), root: Part::Node(0), stack: 1 }
+        Self { nodes: Vec::new(), bounds: Box64::EMPTY, root: Part::Node(0), stack: 1 }
     }
 }
 
@@ -111,9 +111,16 @@ impl Crown {
         Self { root, stack, ..self }
     }
 
+    /// Whether a ray may meet anything.
+    #[inline(always)]
+    pub(super) fn is_met(&self, line: &Line64) -> bool {
+        line.meets(&self.bounds)
+    }
+
     /// Appends a tree over the entries, and returns its root.
     pub(super) fn add(&mut self, mut entries: Vec<(Box64, Part)>) -> Part {
-        if let [(_, part)] = entries[..] {
+        if let [(bounds, part)] = entries[..] {
+            self.bounds = self.bounds.merge(bounds);
             return part;
         }
         entries.sort_by(|a, b| a.0.size().total_cmp(&b.0.size()));
@@ -121,6 +128,7 @@ impl Crown {
             entries = self.bundle(entries);
         }
         let (low, high) = ([f64::INFINITY; WIDTH], [f64::NEG_INFINITY; WIDTH]);
+        self.bounds = entries.iter().fold(self.bounds, |all, entry| all.merge(entry.0));
         let mut node = Node { planes: [low, low, low, high, high, high], children: [Part::Node(0); WIDTH], len: 0 };
         for (lane, (bounds, part)) in entries.into_iter().enumerate() {
             for axis in 0..3 {
@@ -169,9 +177,9 @@ type Pending = (f64, Part);
 /// Entries that a usual crown needs.
 const SMALL_STACK: usize = 24;
 
-/// The way of one ray through a crown.
+/// A ray as boxes in doubles meet it.
 #[derive(Clone, Debug)]
-pub(super) struct Tour {
+pub(super) struct Line64 {
     origin: [f64; 3],
     inverse: [f64; 3],
     /// Rows of the near planes.
@@ -179,103 +187,39 @@ pub(super) struct Tour {
     within: Range<f64>,
     /// Whether every box is met.
     everything: bool,
-    small: [Pending; SMALL_STACK],
-    large: Vec<Pending>,
-    height: usize,
 }
 
-impl Tour {
-    /// For [`begin`](Self::begin) to start.
+impl Line64 {
     #[inline(always)]
-    pub(super) fn new(crown: &Crown) -> Self {
-        let nothing = (0.0, crown.root);
-        let large = if crown.stack > SMALL_STACK { vec![nothing; crown.stack] } else { Vec::new() };
-        Self {
-            origin: [0.0; 3],
-            inverse: [0.0; 3],
-            near: [0; 3],
-            within: 0.0..0.0,
-            everything: false,
-            small: [nothing; SMALL_STACK],
-            large,
-            height: 0,
-        }
-    }
-
-    /// Sends a ray on its way.
-    #[inline(always)]
-    pub(super) fn begin(&mut self, crown: &Crown, prepared: &PreparedRay) {
+    pub(super) fn new(prepared: &PreparedRay) -> Self {
         let PreparedRay { ray, start, end, .. } = *prepared;
         let (origin, direction) = (ray.origin().to_array(), ray.direction().to_array());
+        let (mut inverse, mut near) = ([0.0; 3], [0; 3]);
         let mut ordinary = ray.reach() > 0.0;
         for axis in 0..3 {
-            self.inverse[axis] = 1.0 / direction[axis];
-            self.near[axis] = axis + 3 * usize::from(direction[axis].is_sign_negative());
+            inverse[axis] = 1.0 / direction[axis];
+            near[axis] = axis + 3 * usize::from(direction[axis].is_sign_negative());
             ordinary &= origin[axis].abs() < FARTHEST;
             ordinary &= direction[axis].abs() > SHORTEST || direction[axis] == 0.0;
         }
-        self.origin = origin;
-        self.within = start..end;
-        self.everything = !ordinary;
-        self.height = 1;
-        self.stack()[0] = (start, crown.root);
+        Self { origin, inverse, near, within: start..end, everything: !ordinary }
     }
 
+    /// Whether a box may be met: the test of a node's boxes, for one.
     #[inline(always)]
-    fn stack(&mut self) -> &mut [Pending] {
-        if self.large.is_empty() { &mut self.small } else { &mut self.large }
-    }
-
-    /// The nearest region or primitive that is left and that the ray may enter with a parameter of at most `limit`;
-    /// where any hit will do, first the primitives, which cost less.
-    #[inline(never)]
-    pub(super) fn next<Q: Query>(
-        &mut self,
-        crown: &Crown,
-        level: Level,
-        limit: f64,
-        visits: &mut Visits,
-    ) -> Option<Part> {
-        dispatch!(level, simd => self.advance(simd, crown, Q::ANY, limit, visits))
-    }
-
-    #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, crown: &Crown, any: bool, limit: f64, visits: &mut Visits) -> Option<Part> {
-        while self.height > 0 {
-            self.height -= 1;
-            let height = self.height;
-            let (enter, part) = self.stack()[height];
-            if enter > limit {
-                continue;
-            }
-            let Part::Node(index) = part else { return Some(part) };
-            visits.nodes += 1;
-            let node = &crown.nodes[index as usize];
-            let mut enters = [self.within.start; WIDTH];
-            let mut met = (1 << node.len) - 1;
-            if !self.everything {
-                met &= self.meet(simd, node, &mut enters);
-            }
-            let mut top = height;
-            while met != 0 {
-                let lane = met.trailing_zeros() as usize;
-                met &= met - 1;
-                if any && matches!(node.children[lane], Part::Sphere(_) | Part::Triangle(_)) {
-                    enters[lane] = f64::NEG_INFINITY;
-                }
-                let stack = self.stack();
-                let mut hole = top;
-                // Of two that are entered together the smaller comes first.
-                while hole > height && stack[hole - 1].0 <= enters[lane] {
-                    stack[hole] = stack[hole - 1];
-                    hole -= 1;
-                }
-                stack[hole] = (enters[lane], node.children[lane]);
-                top += 1;
-            }
-            self.height = top;
+    fn meets(&self, bounds: &Box64) -> bool {
+        let planes = [bounds.low.to_array(), bounds.high.to_array()];
+        let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in [0, 1, 2] {
+            let side = self.near[axis] / 3;
+            // NaN bounds nothing.
+            enter = larger((planes[side][axis] - self.origin[axis]) * self.inverse[axis], enter);
+            leave = smaller((planes[1 - side][axis] - self.origin[axis]) * self.inverse[axis], leave);
         }
-        None
+        let enter = enter - (enter.abs() * PARAMETER_ERROR + UNDERFLOW);
+        let leave = leave + (leave.abs() * PARAMETER_ERROR + UNDERFLOW);
+        // An infinite number less itself is NaN, which excludes nothing.
+        self.everything || !(enter > leave || enter > self.within.end || leave < self.within.start)
     }
 
     /// The boxes met, as bits, and lower bounds of the parameters there.
@@ -308,19 +252,106 @@ impl Tour {
     }
 }
 
+/// The way of one ray through a crown.
+#[derive(Clone, Debug)]
+pub(super) struct Tour {
+    line: Line64,
+    small: [Pending; SMALL_STACK],
+    large: Vec<Pending>,
+    height: usize,
+}
+
+impl Tour {
+    /// At the beginning of a ray's way.
+    #[inline(always)]
+    pub(super) fn new(crown: &Crown, line: Line64) -> Self {
+        let nothing = (0.0, crown.root);
+        let large = if crown.stack > SMALL_STACK { vec![nothing; crown.stack] } else { Vec::new() };
+        let mut tour = Self { line, small: [nothing; SMALL_STACK], large, height: 1 };
+        tour.stack()[0].0 = tour.line.within.start;
+        tour
+    }
+
+    /// Sends another ray on its way, unless it passes by the whole.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, crown: &Crown, line: Line64) {
+        self.height = usize::from(crown.is_met(&line));
+        self.stack()[0] = (line.within.start, crown.root);
+        self.line = line;
+    }
+
+    #[inline(always)]
+    fn stack(&mut self) -> &mut [Pending] {
+        if self.large.is_empty() { &mut self.small } else { &mut self.large }
+    }
+
+    /// The nearest region or primitive that is left and that the ray may enter with a parameter of at most `limit`;
+    /// where any hit will do, first the primitives, which cost less.
+    #[inline(always)]
+    pub(super) fn next<S: Simd>(
+        &mut self,
+        simd: S,
+        crown: &Crown,
+        any: bool,
+        limit: f64,
+        visits: &mut Visits,
+    ) -> Option<Part> {
+        while self.height > 0 {
+            self.height -= 1;
+            let height = self.height;
+            let (enter, part) = self.stack()[height];
+            if enter > limit {
+                continue;
+            }
+            let Part::Node(index) = part else { return Some(part) };
+            visits.nodes += 1;
+            let node = &crown.nodes[index as usize];
+            let mut enters = [self.line.within.start; WIDTH];
+            let mut met = (1 << node.len) - 1;
+            if !self.line.everything {
+                met &= self.line.meet(simd, node, &mut enters);
+            }
+            let mut top = height;
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize;
+                met &= met - 1;
+                if any && matches!(node.children[lane], Part::Sphere(_) | Part::Triangle(_)) {
+                    enters[lane] = f64::NEG_INFINITY;
+                }
+                let stack = self.stack();
+                let mut hole = top;
+                // Of two that are entered together the smaller comes first.
+                while hole > height && stack[hole - 1].0 <= enters[lane] {
+                    stack[hole] = stack[hole - 1];
+                    hole -= 1;
+                }
+                stack[hole] = (enters[lane], node.children[lane]);
+                top += 1;
+            }
+            self.height = top;
+        }
+        None
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use fearless_simd::Level;
     use oracle::{Random, scale_point};
 
     use super::*;
     use crate::Ray;
-    use crate::leaf::Closest;
+    use crate::simd::dispatch;
 
     /// All that a tour gives.
     fn met(crown: &Crown, level: Level, ray: &Ray, within: Range<f64>) -> Vec<Part> {
-        let mut tour = Tour::new(crown);
-        tour.begin(crown, &PreparedRay::new(ray, within));
-        std::iter::from_fn(|| tour.next::<Closest>(crown, level, f64::INFINITY, &mut Visits::default())).collect()
+        let line = Line64::new(&PreparedRay::new(ray, within));
+        if !crown.is_met(&line) {
+            return Vec::new();
+        }
+        let mut tour = Tour::new(crown, line);
+        let visits = &mut Visits::default();
+        std::iter::from_fn(|| dispatch!(level, simd => tour.next(simd, crown, false, f64::INFINITY, visits))).collect()
     }
 
     /// Flat boxes of which one corner is met, within a range of one double, at any scale.

@@ -9,7 +9,7 @@ use std::ops::Range;
 use fearless_simd::Simd;
 
 use super::Bvh;
-use super::crown::{Crown, Part, Tour};
+use super::crown::{Crown, Line64, Part, Tour};
 use super::cull::{CullRay, meet_boxes};
 use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
 use crate::leaf::{Leaves, Query};
@@ -85,14 +85,19 @@ fn travel<S: Simd, Q: Query>(
     query: &mut Q,
     visits: &mut Visits,
 ) {
-    let mut tour = Tour::new(crown);
-    tour.begin(crown, prepared);
-    while let Some(region) = next_region(simd, &mut tour, tree, prepared, query, visits) {
-        simd.vectorize(
-            #[inline(always)]
-            || visit(simd, tree, region, prepared, query, visits),
-        );
-    }
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let line = Line64::new(prepared);
+            if !crown.is_met(&line) {
+                return;
+            }
+            let mut tour = Tour::new(crown, line);
+            while let Some(region) = after(simd, &mut tour, tree, crown, prepared, query, visits) {
+                visit(simd, tree, region, prepared, query, visits);
+            }
+        },
+    );
 }
 
 /// Takes a ray through the crown, with the primitives that stand there alone, to the next region that it may meet.
@@ -107,18 +112,28 @@ pub(super) fn next_region<'a, S: Simd, Q: Query>(
     visits: &mut Visits,
 ) -> Option<&'a Region> {
     let crown = tree.crown.as_ref()?;
+    simd.vectorize(
+        #[inline(always)]
+        || after(simd, tour, tree, crown, ray, query, visits),
+    )
+}
+
+#[inline(always)]
+fn after<'a, S: Simd, Q: Query>(
+    simd: S,
+    tour: &mut Tour,
+    tree: &'a Bvh,
+    crown: &Crown,
+    ray: &PreparedRay,
+    query: &mut Q,
+    visits: &mut Visits,
+) -> Option<&'a Region> {
     let leaves = &tree.leaves;
     while !query.is_settled() {
-        match tour.next::<Q>(crown, simd.level(), query.limit(), visits)? {
+        match tour.next(simd, crown, Q::ANY, query.limit(), visits)? {
             Part::Region(index) => return tree.regions.get(index as usize),
-            Part::Sphere(place) => simd.vectorize(
-                #[inline(always)]
-                || meet::<S, Q, Sphere>(simd, query, place as usize, leaves, ray),
-            ),
-            Part::Triangle(place) => simd.vectorize(
-                #[inline(always)]
-                || meet::<S, Q, Triangle>(simd, query, place as usize, leaves, ray),
-            ),
+            Part::Sphere(place) => meet::<S, Q, Sphere>(simd, query, place as usize, leaves, ray),
+            Part::Triangle(place) => meet::<S, Q, Triangle>(simd, query, place as usize, leaves, ray),
             Part::Node(_) => unreachable!("a tour goes through nodes"),
         }
         visits.tests += 1;
