@@ -13,6 +13,14 @@ use std::str::Chars;
 type File = (&'static str, &'static [(&'static str, &'static str, &'static str, &'static str)]);
 
 const FILES: &[File] = &[
+    (
+        "Area",
+        &[
+            ("PER_TERM", "../figures/src/import/polygon.rs", "let error = (", " * count + "),
+            ("AT_ONCE", "../figures/src/import/polygon.rs", " * count + ", ") * U * size"),
+            ("FACING", "../figures/src/import/polygon.rs", "if area[axis].abs() > ", " * error && size"),
+        ],
+    ),
     ("Balls", &[("BALL_SLACK", "rt-geom/src/bvh/cull.rs", "const BALL_SLACK: f32 = ", " * U;")]),
     (
         "Cancelling",
