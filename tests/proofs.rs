@@ -86,6 +86,7 @@ const FILES: &[File] = &[
             ("ROOT", "rt-math/src/exact/double_double.rs", "| `sqrt` | ", " u²"),
         ],
     ),
+    ("Enclosure", &[("LIMB_BITS", "rt-math/src/exact/ball.rs", "const BITS: i64 = ", " * LIMBS as i64;")]),
     (
         "ErrorFree",
         &[("LEAST_PRODUCT", "rt-math/src/exact/error_free.rs", "`a b` is zero or at least ", " in magnitude")],
@@ -227,6 +228,21 @@ const FILES: &[File] = &[
             ("MEASURE_ERROR", "rt-geom/src/enclosing/scan.rs", "const MEASURE_ERROR: f64 = ", ";"),
             ("SKIPPED", "rt-geom/src/enclosing/scan.rs", "limit - self.way - ", " * (limit + self.way)"),
             ("MAX_ROUNDS", "rt-geom/src/enclosing/scan.rs", "const MAX_ROUNDS: usize = ", ";"),
+        ],
+    ),
+    (
+        "Series",
+        &[
+            (
+                "STEPS",
+                "rt-shade/src/certified/mod.rs",
+                "const fn halvings(limbs: usize) -> usize {\n    ",
+                " + limbs.isqrt()",
+            ),
+            ("LONGEST", "rt-shade/src/certified/mod.rs", "const LONGEST: usize = ", ";"),
+            ("EXP_STEPS", "rt-shade/src/certified/power.rs", "let steps = ", " + (4 * limbs)"),
+            ("LOWEST", "rt-shade/src/certified/power.rs", "const LOWEST: f64 = ", ";"),
+            ("LEAST", "rt-shade/src/certified/power.rs", "const LEAST: i32 = ", ";"),
         ],
     ),
     ("Single", &[("UNIT", "rt-geom/src/bvh/cull.rs", "const U: f32 = ", ";")]),
