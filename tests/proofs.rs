@@ -191,6 +191,15 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "Ordinary",
+        &[
+            ("ORDINARY_START", "rt-geom/src/enclosing/tangent.rs", "const ORDINARY: Range<f64> = ", ".."),
+            ("ORDINARY_END", "rt-geom/src/enclosing/tangent.rs", "const ORDINARY: Range<f64> = 1e-40..", ";"),
+            ("SQUARES_START", "rt-geom/src/enclosing/tangent.rs", "const ORDINARY_SQUARES: Range<f64> = ", ".."),
+            ("SQUARES_END", "rt-geom/src/enclosing/tangent.rs", "const ORDINARY_SQUARES: Range<f64> = 1e-80..", ";"),
+        ],
+    ),
+    (
         "Polygon",
         &[(
             "TURN_ERROR",

@@ -620,3 +620,18 @@ Proof.
   assert (F2 : Fs 2) by (replace 2 with (bp 1) by (simpl; lra); apply Fs_bp; lia).
   split; [apply RNs_below; [now apply Fs_opp | lra] | apply RNs_above; [assumption | lra]].
 Qed.
+(* The scale of a direction times that of a frame, powers of two: exact, or zero where it is below 2^-1074 (and then the
+   length is, so that everything is met). *)
+Theorem scales : forall k, RN (bp k) = bp k \/ RN (bp k) = 0.
+Proof.
+  intro k. destruct (Z_le_gt_dec (-1074) k) as [L|G]; [left; apply RN_id, F_bp; exact L | right].
+  assert (T : RN (bp (-1075)) = 0).
+  { unfold RN, round, scaled_mantissa. assert (C : cexp radix2 fexp (bp (-1075)) = (-1074)%Z) by (unfold cexp;
+    rewrite mag_bpow;
+      reflexivity). rewrite C, <- bp_add. replace (bp (-1075 + - -1074)) with (/ 2) by (simpl; lra).
+    replace (ZnearestE (/ 2)) with 0%Z; [unfold F2R; simpl; ring|]. unfold Znearest.
+    assert (Z : Zfloor (/ 2) = 0%Z) by (apply Zfloor_imp; simpl; lra).
+    rewrite Z, Rminus_0_r, Rcompare_Eq by reflexivity.
+    reflexivity. }
+  apply Rle_antisym; [rewrite <- T; apply RN_le, bp_le; lia | rewrite <- RN_0; apply RN_le, Rlt_le, bp_pos].
+Qed.

@@ -163,3 +163,20 @@ Proof.
 Qed.
 Theorem down_below : forall x, down x <= x.
 Proof. intro x. unfold down. pose proof (up_above (- x)). lra. Qed.
+(* The errors of a line that are below 1/16 as doubles: what the tests of boxes and balls take for granted. *)
+Theorem up_small : forall x, 0 <= x <= / 16 -> up x <= / 10.
+Proof.
+  intros x H. unfold up. pose proof (UNIT_holds x) as E1. set (n := RNs x) in *. rewrite (Rabs_pos_eq x) in E1 by lra.
+  assert (T : bp (-126) <= / 1000000 * v) by (apply Rle_trans with (bp (-40 + -24)); [apply bp_le; lia|];
+    rewrite bp_add;
+    fold UNIT; pose proof v_pos; simpl (bp (-40)); lra).
+  assert (T2 : bp (-150) <= bp (-126)) by (apply bp_le; lia). apply Rabs_le_inv in E1.
+  assert (n0 : 0 <= n) by (unfold n; apply RNs_above; [apply Fs_0 | lra]). rewrite (Rabs_pos_eq n) by assumption.
+  assert (B : bp (-23) = / 8388608) by (simpl; lra). rewrite B. pose proof (UNIT_holds (n * / 8388608)) as E2.
+  set (m := RNs (n * / 8388608)) in *. rewrite (Rabs_pos_eq (n * / 8388608)) in E2 by lra. apply Rabs_le_inv in E2.
+  assert (m0 : 0 <= m) by (unfold m; apply RNs_above; [apply Fs_0 | lra]). pose proof (bp_pos (-126)).
+  pose proof (UNIT_holds (m + bp (-126))) as E3. set (k := RNs (m + bp (-126))) in *.
+  rewrite (Rabs_pos_eq (m + bp (-126))) in E3 by lra. apply Rabs_le_inv in E3.
+  assert (k0 : 0 <= k) by (unfold k; apply RNs_above; [apply Fs_0 | lra]). pose proof (UNIT_holds (n + k)) as E4.
+  rewrite (Rabs_pos_eq (n + k)) in E4 by lra. apply Rabs_le_inv in E4. rewrite v_val in *. lra.
+Qed.
