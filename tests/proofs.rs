@@ -93,6 +93,15 @@ const FILES: &[File] = &[
     ),
     ("Frame", &[("COORDINATE_ERROR", "rt-geom/src/bvh/node.rs", "pub(super) const COORDINATE_ERROR: f64 = ", ";")]),
     (
+        "Fixed",
+        &[
+            ("ERROR", "rt-math/src/exact/fixed.rs", "const ERROR: f64 = ", ";"),
+            ("SAFE_LEAST", "rt-math/src/exact/fixed.rs", "const SAFE: core::ops::Range<i32> = ", ".."),
+            ("SMALL", "rt-math/src/exact/fixed.rs", "const SMALL: i32 = ", ";"),
+            ("CUT", "rt-math/src/pseudo_inverse/fixed.rs", "const CUT: f64 = ", ";"),
+        ],
+    ),
+    (
         "Light",
         &[
             ("UNIT_ERROR", "rt-shade/src/phong.rs", "const UNIT_ERROR: f64 = ", ";"),
@@ -228,6 +237,16 @@ const FILES: &[File] = &[
         &[("DOUBLE_DOUBLE_ERROR", "rt-math/src/quadratic.rs", "const DOUBLE_DOUBLE_ERROR: f64 = ", ";")],
     ),
     ("Reach", &[("REACH_ERROR", "rt-geom/src/enclosing/certify.rs", "const REACH_ERROR: f64 = ", ";")]),
+    (
+        "Reciprocal",
+        &[
+            ("ETA_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "let eta = ", " * eta_0"),
+            ("ETA_ROUNDING", "rt-math/src/pseudo_inverse/regular.rs", "eta_0 + ", " * (U * U"),
+            ("LOW_ROUNDING", "rt-math/src/pseudo_inverse/regular.rs", "r.abs() * (eta + ", ")) })"),
+            ("TERMS_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "times(sum, low, ", " * terms"),
+            ("ENTRIES_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "* terms + ", " * ((b[k]"),
+        ],
+    ),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     (
