@@ -247,6 +247,15 @@ const FILES: &[File] = &[
             ("ENTRIES_FACTOR", "rt-math/src/pseudo_inverse/regular.rs", "* terms + ", " * ((b[k]"),
         ],
     ),
+    (
+        "Refinement",
+        &[
+            ("REST_ERROR", "rt-geom/src/triangle/finish.rs", "const REST_ERROR: f64 = ", ";"),
+            ("SOLUTION_ERROR", "rt-geom/src/triangle/finish.rs", "const SOLUTION_ERROR: f64 = ", ";"),
+            ("FIRST_WEIGHT", "rt-geom/src/triangle/finish.rs", "[(alpha, ", " * error)"),
+            ("LEAST_WEIGHT", "rt-geom/src/triangle/filter.rs", "|&weight| weight >= ", ")"),
+        ],
+    ),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     ("Round", &[]),
     (
@@ -356,6 +365,16 @@ const FILES: &[File] = &[
             ("VECTOR_ERROR", "rt-geom/src/surface/finish.rs", "U * size + ", " * (size + way)"),
             ("SIDE_ERROR", "rt-geom/src/surface/finish.rs", "normal.error * way.error + ", " * n * w)"),
             ("UNDERFLOW", "rt-geom/src/surface/finish.rs", "const UNDERFLOW: f64 = ", ";"),
+        ],
+    ),
+    (
+        "SurfaceWeights",
+        &[
+            ("PART_FACTOR", "rt-geom/src/surface/filter.rs", "let part_error = edge * (", " * (hit.point_error"),
+            ("SUM_FACTOR", "rt-geom/src/surface/filter.rs", "let error = ", " * (part_error"),
+            ("NORMAL_FACTOR", "rt-geom/src/surface/filter.rs", "(part_error + ", " * hit.normal_error)"),
+            ("ROUNDINGS", "rt-geom/src/surface/filter.rs", "/ length + ", ";"),
+            ("LARGEST_NORMAL_ERROR", "rt-geom/src/surface/filter.rs", "hit.normal_error <= length * ", ";"),
         ],
     ),
     (
