@@ -316,6 +316,14 @@ const FILES: &[File] = &[
             ("SIDE_ERROR", "rt-geom/src/sphere/exact.rs", "let error = ", " * (square.high()"),
         ],
     ),
+    (
+        "SphereStep",
+        &[
+            ("RESIDUAL_ERROR", "rt-geom/src/sphere/finish.rs", "const RESIDUAL_ERROR: f64 = ", ";"),
+            ("LARGEST_SLACK", "rt-geom/src/sphere/finish.rs", "if slack > ", " {"),
+            ("SLACK_FACTOR", "rt-geom/src/sphere/finish.rs", "let relative = ", " * slack"),
+        ],
+    ),
     ("Steps", &[]),
     (
         "SphereTree",
