@@ -22,6 +22,15 @@ const FILES: &[File] = &[
         ],
     ),
     ("Balls", &[("BALL_SLACK", "rt-geom/src/bvh/cull.rs", "const BALL_SLACK: f32 = ", " * U;")]),
+        ],
+    ),
+    (
+        "Balls",
+        &[
+            ("LEAST", "rt-shade/src/certified/power.rs", "const LEAST: i32 = ", ";"),
+            ("LOWEST", "rt-shade/src/certified/power.rs", "const LOWEST: f64 = ", ";"),
+        ],
+    ),
     (
         "Cancelling",
         &[
@@ -257,6 +266,13 @@ const FILES: &[File] = &[
         ],
     ),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
+    (
+        "ReflectRange",
+        &[
+            ("WINDOW", "rt-math/src/reflect.rs", "const WINDOW: f64 = ", ";"),
+            ("ERROR_FLOOR", "rt-math/src/reflect.rs", "const ERROR_FLOOR: f64 = ", ";"),
+        ],
+    ),
     ("Round", &[]),
     (
         "Scan",
