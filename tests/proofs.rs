@@ -22,15 +22,6 @@ const FILES: &[File] = &[
         ],
     ),
     ("Balls", &[("BALL_SLACK", "rt-geom/src/bvh/cull.rs", "const BALL_SLACK: f32 = ", " * U;")]),
-        ],
-    ),
-    (
-        "Balls",
-        &[
-            ("LEAST", "rt-shade/src/certified/power.rs", "const LEAST: i32 = ", ";"),
-            ("LOWEST", "rt-shade/src/certified/power.rs", "const LOWEST: f64 = ", ";"),
-        ],
-    ),
     (
         "Cancelling",
         &[
