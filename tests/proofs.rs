@@ -15,6 +15,16 @@ type File = (&'static str, &'static [(&'static str, &'static str, &'static str, 
 const FILES: &[File] = &[
     (
         "Area",
+        "Angles",
+        &[
+            ("TURN_SHARE", "rt-shade/src/mapping.rs", "(share(", ", h_square)"),
+            ("HALF_SHARE", "rt-shade/src/mapping.rs", "share(", ", length_square)"),
+            ("COORDINATE_ROUNDING", "rt-shade/src/mapping.rs", "turns * relative + ", " } else"),
+            ("LARGEST_PART", "rt-shade/src/mapping.rs", "relative <= ", " && square"),
+        ],
+    ),
+    (
+        "Balls",
         &[
             ("PER_TERM", "../figures/src/import/polygon.rs", "let error = (", " * count + "),
             ("AT_ONCE", "../figures/src/import/polygon.rs", " * count + ", ") * U * size"),
@@ -237,6 +247,7 @@ const FILES: &[File] = &[
         &[("DOUBLE_DOUBLE_ERROR", "rt-math/src/quadratic.rs", "const DOUBLE_DOUBLE_ERROR: f64 = ", ";")],
     ),
     ("Reach", &[("REACH_ERROR", "rt-geom/src/enclosing/certify.rs", "const REACH_ERROR: f64 = ", ";")]),
+    ("Ray", &[("LONGEST", "rt-geom/src/ray.rs", "const LONGEST: f64 = ", ";")]),
     (
         "Reciprocal",
         &[
