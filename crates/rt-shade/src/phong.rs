@@ -900,4 +900,102 @@ mod tests {
             }
         }
     }
+
+    /// The length of the difference of a vector and an exact one.
+    fn off(found: DVec3, truth: &[Big; 3]) -> f64 {
+        let difference = [0, 1, 2].map(|i| (exact(found[i]) - &truth[i]).to_f64().value());
+        DVec3::from_array(difference).length()
+    }
+
+    #[test]
+    fn directions_are_within_their_bounds_and_not_far_below() {
+        let mut random = Random::new(21);
+        let (mut unit_share, mut incident_share) = (0.0f64, 0.0f64);
+        for _ in 0..cases(LONG) / 10 {
+            let (v, light) = (random.power(-200..200) * random.point(), random.point());
+            let found = off(unit(v).vector, &oracle::unit(&vector(v)));
+            assert!(found <= UNIT_ERROR, "{v:?}: {found:e}");
+            unit_share = unit_share.max(found / UNIT_ERROR);
+            let point = light + random.power(-10..10) * random.point();
+            let way = [0, 1, 2].map(|i| exact(point[i]) - exact(light[i]));
+            let found = off(unit(point - light).vector, &oracle::unit(&way));
+            assert!(found <= INCIDENT_ERROR, "{point:?} from {light:?}: {found:e}");
+            incident_share = incident_share.max(found / INCIDENT_ERROR);
+        }
+        assert!(unit_share > 0.25 && incident_share > 0.25, "{unit_share} {incident_share}");
+    }
+
+    /// Errors far above rounding, in their worst directions: each bound holds what they do, and little more.
+    #[test]
+    fn what_errors_of_vectors_do_is_bounded_and_hardly_more() {
+        let mut random = Random::new(22);
+        let mut shares = [0.0f64; 4];
+        let mut see = |i: usize, change: f64, bound: f64| {
+            assert!(change.abs() <= bound, "{i}: {change:e}, bound {bound:e}");
+            shares[i] = shares[i].max(change.abs() / bound);
+        };
+        for i in 0..cases(LONG) {
+            let mut direction = || unit(random.point()).vector;
+            let (d, l, n, side) = (direction(), direction(), direction(), direction());
+            let e = 1e-5;
+            let of = |l: DVec3, n: DVec3| alignment(d, l, n, -l.dot(n));
+            let moved = |v: DVec3, to: DVec3| v + e * unit(to - to.dot(v) * v).vector;
+            let mirrored = -d - 2.0 * (-d).dot(n) * n;
+            see(0, of(moved(l, mirrored), n) - of(l, n), alignment_error(1.001 * e, 0.0));
+            let worst = l.dot(n) * d + d.dot(n) * l;
+            see(1, of(l, moved(n, worst)) - of(l, n), alignment_error(0.0, 1.001 * e));
+            let axis = DVec3::AXES[i % 3];
+            see(2, (n + e * axis).dot(axis) - n.dot(axis), slope(axis, n, 1.001 * e).1);
+            let length = random.power(-300..300);
+            let wrong = length * moved(n, side);
+            let turned = unit(wrong).vector - unit(length * n).vector;
+            see(3, turned.length(), relative(1.001 * e * length, 1.0 / length));
+        }
+        assert!(shares[0] > 0.9 && shares[1] > 0.45 && shares[2] > 0.9 && shares[3] > 0.9, "{shares:?}");
+    }
+
+    #[test]
+    fn what_an_error_does_to_a_highlight_is_bounded_and_hardly_more() {
+        let mut random = Random::new(23);
+        let (mut near, mut rounding) = (0.0f64, 0.0f64);
+        for _ in 0..cases(LONG) / 20 {
+            let (x, shininess) = (random.within(0.1, 1.0), random.power(0..8));
+            let highlight = power(x, shininess);
+            let error = x * random.power(-30..-6) / shininess;
+            let bound = power_error(x, error, highlight, shininess);
+            for wrong in [x - error, x + error] {
+                let change = (wrong.powf(shininess) - x.powf(shininess)).abs();
+                assert!(change <= bound, "{x} within {error:e} to the {shininess}: {change:e}, bound {bound:e}");
+                near = near.max(change / bound);
+            }
+            let bound = power_error(x, 0.0, highlight, shininess);
+            let off = (exact(highlight) - oracle::power(x, shininess)).to_f64().value().abs();
+            assert!(off <= bound, "{x} to the {shininess}: {off:e}, bound {bound:e}");
+            rounding = rounding.max(off / bound);
+        }
+        assert!(near > 0.9 && rounding > 0.2, "{near} {rounding}");
+
+        // Near up to a growth of 1/32, and then the larger alignment itself, if the power is not above it.
+        let bound = |x: f64, error: f64, shininess: f64| power_error(x, error, x.powf(shininess), shininess);
+        assert!(bound(1.0, 0.0295, 1.0) < 0.035 && (1.0..1.1).contains(&bound(1.0, 0.033, 1.0)));
+        assert!((0.6..0.7).contains(&bound(0.5, 0.1, 1.0)) && (0.6..0.7).contains(&bound(0.5, 0.1, 8.0)));
+        assert_eq!([bound(1e-4, 1e-2, 0.5), bound(1e-4, 1e-2, 0.99)], [f64::INFINITY; 2]);
+        assert_eq!(bound(-0.2, 0.1, 1.0), 0.0);
+    }
+
+    #[test]
+    fn what_the_products_of_a_diffuse_term_lose_is_bounded_and_hardly_more() {
+        let (mut random, mut share) = (Random::new(24), 0.0f64);
+        for _ in 0..cases(LONG) {
+            let [diffuse, surface, light] = [(); 3].map(|()| random.within(0.1, 4.0));
+            let cosine = random.within(0.9, 1.0);
+            let product = diffuse * cosine * surface * light;
+            let off =
+                (exact(product) - exact(diffuse) * exact(cosine) * exact(surface) * exact(light)).to_f64().value();
+            let bound = diffuse * light * diffuse_error(surface, 0.0, 0.0);
+            assert!(off.abs() <= bound, "{diffuse} {cosine} {surface} {light}: {off:e}, bound {bound:e}");
+            share = share.max(off.abs() / bound);
+        }
+        assert!(share > 0.5, "{share}");
+    }
 }
