@@ -105,7 +105,7 @@ proptest! {
 fn check(read: Result<Mesh, ImportError>) -> Result<(), TestCaseError> {
     match read {
         Ok(mesh) => {
-            prop_assert_eq!(mesh.triangles.len(), mesh.vertex_colors.len());
+            prop_assert!(mesh.vertex_colors.is_empty() || mesh.vertex_colors.len() == mesh.triangles.len());
             prop_assert!(mesh.material_of.is_empty() || mesh.material_of.len() == mesh.triangles.len());
             prop_assert!(mesh.triangles.iter().all(|triangle| !triangle.is_degenerate()));
         }

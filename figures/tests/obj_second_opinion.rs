@@ -67,7 +67,8 @@ proptest! {
         let expected = second_opinion(&text);
         match obj::read(text.as_bytes(), "mesh.obj", None) {
             Ok(mesh) => {
-                let found: Vec<_> = mesh.triangles.into_iter().zip(mesh.vertex_colors).collect();
+                let colors = |at: usize| mesh.vertex_colors.get(at).copied().flatten();
+                let found: Vec<_> = mesh.triangles.iter().enumerate().map(|(at, t)| (*t, colors(at))).collect();
                 prop_assert_eq!(found, expected);
             }
             Err(error) => {

@@ -73,6 +73,34 @@ pub(crate) fn find(name: &[u8]) -> Option<ElementName> {
     element.map(ElementName::Label)
 }
 
+/// Names that were found before, so that [`find`] is asked once for most.
+#[derive(Clone)]
+pub(crate) struct Found([(u64, Option<ElementName>); 64]);
+
+impl Default for Found {
+    fn default() -> Self {
+        Self([(0, None); 64])
+    }
+}
+
+impl Found {
+    /// What [`find`] gives.
+    #[inline]
+    pub(crate) fn find(&mut self, name: &[u8]) -> Option<ElementName> {
+        if !(1..8).contains(&name.len()) {
+            return find(name);
+        }
+        // The bytes and how many they are: no two names of up to seven bytes have the same key, and none has the key 0.
+        let key = name.iter().fold(name.len() as u64, |key, &byte| key << 8 | u64::from(byte));
+        let place = (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 58) as usize;
+        let (known, element) = &mut self.0[place];
+        if *known != key {
+            (*known, *element) = (key, find(name));
+        }
+        *element
+    }
+}
+
 /// Uranium: heavier elements do not occur in molecules.
 pub(super) const HEAVIEST: u8 = 92;
 
@@ -209,6 +237,17 @@ mod tests {
         for name in ["Qq", "Carbon", "Unobtainium", "Jx", "ZZ", "Rq7", "WATER", "Cab", "1e5", "x3y", "_C"] {
             let expected = (name == "x3y").then_some(0);
             assert_eq!(number(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_was_found_is_found_again() {
+        let mut found = Found::default();
+        let mut random = oracle::Random::new(4);
+        for _ in 0..100_000 {
+            let length = random.below(9);
+            let name: Vec<u8> = (0..length).map(|_| random.pick(b"CaHOW1x9\0\xff")).collect();
+            assert_eq!(found.find(&name), find(&name), "{name:?}");
         }
     }
 

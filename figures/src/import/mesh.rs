@@ -1,10 +1,14 @@
 //! A mesh as it comes from a file: triangles, the colours of each, and what was left out.
 
+use std::collections::TryReserveError;
+use std::ops::Range;
+
 use glam::DVec3;
 use rt_geom::Triangle;
 
 use super::polygon::{Cutter, Outcome};
 use super::problem::{FileProblem, ImportError, LineProblem};
+use super::spheres::append;
 use crate::scene::{Look, LookIndex, Scene};
 
 /// The triangles of a mesh.
@@ -12,7 +16,7 @@ use crate::scene::{Look, LookIndex, Scene};
 pub struct Mesh {
     /// The triangles that have an area, in the file's order.
     pub triangles: Vec<Triangle>,
-    /// For each of them the colours at its vertices, if all three have one.
+    /// For each of them the colours at its vertices, if all three have one; empty if none has.
     pub vertex_colors: Vec<Option<[DVec3; 3]>>,
     /// The colours of the materials that faces name.
     pub materials: Vec<DVec3>,
@@ -45,6 +49,74 @@ pub(super) enum FaceColor {
 /// A vertex, and its colour if it has one.
 pub(super) type Vertex = (DVec3, Option<DVec3>);
 
+/// The vertices of a mesh.
+#[derive(Default)]
+pub(super) struct Vertices {
+    positions: Vec<DVec3>,
+    /// The colour of each; empty if none has one.
+    colors: Vec<Option<DVec3>>,
+}
+
+impl Vertices {
+    pub(super) fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.truncate(0);
+    }
+
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.positions.truncate(len);
+        self.colors.truncate(len);
+    }
+
+    /// Appends a vertex; an error if there is no memory for it.
+    pub(super) fn try_push(&mut self, position: DVec3, color: Option<DVec3>) -> Result<(), TryReserveError> {
+        self.positions.try_reserve(1)?;
+        if color.is_some() || !self.colors.is_empty() {
+            self.colors.try_reserve(self.positions.len() + 1 - self.colors.len())?;
+        }
+        self.push(position, color);
+        Ok(())
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, position: DVec3, color: Option<DVec3>) {
+        if color.is_some() || !self.colors.is_empty() {
+            self.colors.resize(self.positions.len(), None);
+            self.colors.push(color);
+        }
+        self.positions.push(position);
+    }
+
+    /// Appends some vertices of others.
+    pub(super) fn append(&mut self, more: &Self, range: Range<usize>) -> Result<(), TryReserveError> {
+        self.positions.try_reserve(range.len())?;
+        if !more.colors.is_empty() || !self.colors.is_empty() {
+            self.colors.try_reserve(self.positions.len() + range.len() - self.colors.len())?;
+            self.colors.resize(self.positions.len(), None);
+            self.colors.extend(range.clone().map(|at| more.color(at)));
+        }
+        self.positions.extend_from_slice(&more.positions[range]);
+        Ok(())
+    }
+
+    #[inline]
+    fn color(&self, at: usize) -> Option<DVec3> {
+        self.colors.get(at).copied().flatten()
+    }
+
+    #[inline]
+    fn at(&self, at: usize) -> Vertex {
+        (self.positions[at], self.color(at))
+    }
+}
+
 /// What turns faces into triangles, with places to work in.
 #[derive(Default)]
 pub(super) struct Faces {
@@ -59,18 +131,21 @@ impl Faces {
         &mut self,
         mesh: &mut Mesh,
         corners: &[usize],
-        vertices: &[Vertex],
+        vertices: &Vertices,
         color: FaceColor,
     ) -> Result<(), LineProblem> {
         let most = corners.len() - 2;
         mesh.triangles.try_reserve(most).map_err(|_| LineProblem::MeshMemory)?;
-        mesh.vertex_colors.try_reserve(most).map_err(|_| LineProblem::MeshMemory)?;
+        if !vertices.colors.is_empty() || !mesh.vertex_colors.is_empty() || matches!(color, FaceColor::Plain(_)) {
+            let missing = mesh.triangles.len() + most - mesh.vertex_colors.len();
+            mesh.vertex_colors.try_reserve(missing).map_err(|_| LineProblem::MeshMemory)?;
+        }
         let before = mesh.triangles.len();
         if let &[a, b, c] = corners {
-            mesh.push([a, b, c].map(|corner| vertices[corner]), color);
+            mesh.push([a, b, c].map(|corner| vertices.at(corner)), color);
         } else {
             self.points.clear();
-            self.points.extend(corners.iter().map(|&corner| vertices[corner].0));
+            self.points.extend(corners.iter().map(|&corner| vertices.positions[corner]));
             self.cuts.clear();
             match self.cutter.cut(&self.points, &mut self.cuts) {
                 Outcome::Exact => {}
@@ -78,7 +153,7 @@ impl Faces {
                 Outcome::TooLarge => return Err(LineProblem::LargeFace(corners.len())),
             }
             for cut in &self.cuts {
-                mesh.push(cut.map(|at| vertices[corners[at as usize]]), color);
+                mesh.push(cut.map(|at| vertices.at(corners[at as usize])), color);
             }
         }
         mesh.flat += most - (mesh.triangles.len() - before);
@@ -134,11 +209,12 @@ impl Mesh {
                 scene.triangle_looks.resize(scene.triangle_looks.len() + triangles.len(), look);
             }
         }
-        if vertex_colors.iter().any(Option::is_some) || !scene.vertex_colors.is_empty() {
+        if !vertex_colors.is_empty() || !scene.vertex_colors.is_empty() {
             scene.vertex_colors.resize(scene.triangles.len(), None);
             scene.vertex_colors.extend(vertex_colors);
+            scene.vertex_colors.resize(scene.triangles.len() + triangles.len(), None);
         }
-        scene.triangles.extend(triangles);
+        append(&mut scene.triangles, triangles);
         Ok(())
     }
 
@@ -146,11 +222,15 @@ impl Mesh {
     pub(super) fn push(&mut self, [a, b, c]: [Vertex; 3], color: FaceColor) {
         let triangle = Triangle::new(a.0, b.0, c.0).expect("vertices were checked when they were read");
         if !triangle.is_degenerate() {
-            self.triangles.push(triangle);
-            self.vertex_colors.push(match color {
+            let colors = match color {
                 FaceColor::Plain(color) => Some([color; 3]),
                 _ => a.1.zip(b.1).zip(c.1).map(|((a, b), c)| [a, b, c]),
-            });
+            };
+            if colors.is_some() || !self.vertex_colors.is_empty() {
+                self.vertex_colors.resize(self.triangles.len(), None);
+                self.vertex_colors.push(colors);
+            }
+            self.triangles.push(triangle);
         }
     }
 }

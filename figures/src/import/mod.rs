@@ -2,6 +2,7 @@
 //!
 //! A file is known by the ending of its name, without that of gzip, or by its content where the ending says nothing.
 
+mod blocks;
 mod elements;
 mod foreign;
 pub mod mesh;

@@ -6,6 +6,10 @@
 //! Materials, `mtllib` and `usemtl`, give faces the diffuse colour of the library, which lies beside the file; `mtl.rs`
 //! reads it. Everything else (texture coordinates, normals, lines, points) is ignored, and the mesh lists what it was:
 //! the scene model has no use for it.
+//!
+//! `quick.rs` reads plain lines of vertices and faces, in parallel; here is what each statement means.
+
+mod quick;
 
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
@@ -13,11 +17,12 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::mesh::{FaceColor, Faces, Mesh, NO_MATERIAL, Vertex};
+use super::mesh::{FaceColor, Faces, Mesh, NO_MATERIAL, Vertex, Vertices};
 use super::mtl::Library;
 use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
 use super::words::{Words, number, shown};
 use crate::text::{quoted, without_mark};
+use quick::{Block, Rest};
 
 /// What is ignored, with its keywords.
 const PASSED_OVER: [(&str, &[&str]); 5] = [
@@ -33,19 +38,20 @@ const PASSED_OVER: [(&str, &[&str]); 5] = [
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn read(mut source: impl BufRead, name: &str, folder: Option<&Path>) -> Result<Mesh, ImportError> {
+pub fn read(mut source: impl Read + Send, name: &str, folder: Option<&Path>) -> Result<Mesh, ImportError> {
     let mut reader = Reader::new();
-    let mut bytes = Vec::new();
-    let mut line = 0;
-    let path = || name.to_owned();
+    let mut line = 1;
+    // While what was read of one block is appended, the next is read. Both keep their memory.
+    let (mut ready, mut next) = (Block::default(), Block::default());
+    let mut rest = Rest::default();
     loop {
-        let (first, read) = (line + 1, statement(&mut source, &mut bytes, &mut line));
-        if !read.map_err(|source| FileProblem::Read { path: path(), source })? {
+        let (appended, filled) = rayon::join(|| reader.append(&ready, &mut line), || next.fill(&mut source, &mut rest));
+        appended.map_err(|problem| ImportError::in_line(name, line, problem))?;
+        filled.map_err(|source| FileProblem::Read { path: name.to_owned(), source })?;
+        if next.is_empty() {
             break;
         }
-        let complete = bytes.len() != LONGEST_LINE || bytes.ends_with(b"\n");
-        let done = if complete { reader.statement(&bytes, first) } else { Err(LineProblem::Long) };
-        done.map_err(|problem| ImportError::in_line(name, first, problem))?;
+        std::mem::swap(&mut ready, &mut next);
     }
     let mesh = reader.finish(folder).map_err(|(line, problem)| ImportError::in_line(name, line, problem))?;
     mesh.some(name)
@@ -55,7 +61,8 @@ pub fn read(mut source: impl BufRead, name: &str, folder: Option<&Path>) -> Resu
 fn statement(source: &mut impl BufRead, bytes: &mut Vec<u8>, line: &mut usize) -> io::Result<bool> {
     bytes.clear();
     loop {
-        let room = LONGEST_LINE - bytes.len();
+        let before = bytes.len();
+        let room = LONGEST_LINE - before;
         if source.by_ref().take(room as u64).read_until(b'\n', bytes)? == 0 {
             return Ok(!bytes.is_empty());
         }
@@ -64,7 +71,7 @@ fn statement(source: &mut impl BufRead, bytes: &mut Vec<u8>, line: &mut usize) -
         let text = text.strip_suffix(b"\r").unwrap_or(text);
         match text.strip_suffix(b"\\") {
             // A comment may end in a path of another system.
-            Some(text) if !text.contains(&b'#') => {
+            Some(text) if !text.get(before..).unwrap_or_default().contains(&b'#') => {
                 let length = text.len();
                 bytes.truncate(length);
                 bytes.push(b' ');
@@ -77,7 +84,7 @@ fn statement(source: &mut impl BufRead, bytes: &mut Vec<u8>, line: &mut usize) -
 /// A mesh that is being read.
 struct Reader {
     mesh: Mesh,
-    vertices: Vec<Vertex>,
+    vertices: Vertices,
     /// Bit `k` is set if `PASSED_OVER[k]` occurs.
     passed_over: u32,
     /// The faces from the first one on that names a vertex that comes later: their lines, where their corners end, and
@@ -98,7 +105,7 @@ impl Reader {
     fn new() -> Self {
         Self {
             mesh: Mesh::default(),
-            vertices: Vec::new(),
+            vertices: Vertices::default(),
             passed_over: 0,
             later: Vec::new(),
             later_corners: Vec::new(),
@@ -118,15 +125,15 @@ impl Reader {
         let words = words.take_while(|word| !word.starts_with(b"#"));
         match keyword {
             b"v" => {
-                self.vertices.try_reserve(1).map_err(|_| LineProblem::MeshMemory)?;
-                self.vertices.push(vertex(words)?);
+                let (position, color) = vertex(words)?;
+                self.vertices.try_push(position, color).map_err(|_| LineProblem::MeshMemory)?;
             }
             b"f" => {
                 self.corners.clear();
                 for word in words {
                     self.corners.push(position(word, self.vertices.len())?);
                 }
-                self.face(line)?;
+                self.face(line, self.vertices.len())?;
             }
             b"mtllib" if self.libraries.len() < MOST_LIBRARIES => self.libraries.push(rest(bytes, keyword).to_vec()),
             b"usemtl" => {
@@ -144,9 +151,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Cuts the face, or keeps it for later: faces stay in order.
-    fn face(&mut self, line: usize) -> Result<(), LineProblem> {
-        let known = self.vertices.len();
+    /// Cuts the face, above which so many vertices are known, or keeps it for later: faces stay in order.
+    fn face(&mut self, line: usize, known: usize) -> Result<(), LineProblem> {
         if self.corners.len() < 3 {
             return Err(LineProblem::Face(self.corners.len()));
         }
@@ -288,7 +294,7 @@ mod tests {
             Triangle::new(all[indices[0]], all[indices[1]], all[indices[2]]).unwrap()
         };
         assert_eq!(mesh.triangles, [corners([0, 1, 2]), corners([0, 2, 3])]);
-        assert_eq!((mesh.vertex_colors, mesh.flat), (vec![None, None], 0));
+        assert_eq!((mesh.vertex_colors, mesh.flat), (vec![], 0));
     }
 
     #[test]
@@ -375,5 +381,158 @@ mod tests {
         assert_eq!((mesh.triangles.len(), mesh.flat), (1, 4));
         let error = parse(&format!("{SQUARE}f 1 2 2\n")).unwrap_err();
         assert!(error.to_string().contains("none of its 1 triangles has an area"), "{error}");
+    }
+
+    /// Reads statement by statement, by the rules above alone.
+    fn read_slowly(mut text: &[u8]) -> Result<Mesh, ImportError> {
+        let (mut reader, mut bytes, mut line) = (Reader::new(), Vec::new(), 0);
+        let failed = |(line, problem)| ImportError::in_line("mesh.obj", line, problem);
+        loop {
+            let first = line + 1;
+            if !statement(&mut text, &mut bytes, &mut line).unwrap() {
+                break;
+            }
+            let long = bytes.len() == LONGEST_LINE && !bytes.ends_with(b"\n");
+            let done = if long { Err(LineProblem::Long) } else { reader.statement(&bytes, first) };
+            done.map_err(|problem| failed((first, problem)))?;
+        }
+        reader.finish(None).map_err(failed)?.some("mesh.obj")
+    }
+
+    fn assert_read_alike(text: &[u8]) -> bool {
+        let quickly = read(text, "mesh.obj", None).map_err(|error| error.to_string());
+        let slowly = read_slowly(text).map_err(|error| error.to_string());
+        assert_eq!(quickly, slowly, "{:?}", String::from_utf8_lossy(text));
+        quickly.is_ok()
+    }
+
+    /// A statement: most are right, and some are of all that can stand in a line.
+    fn line(random: &mut oracle::Random, vertices: &mut usize, hostile: u64) -> String {
+        let blank = random.pick(&[" ", " ", " ", "\t", "  ", " \t ", "\x0c"]);
+        let end = random.pick(&["\n", "\n", "\n", "\r\n", " \n", "\t\r\n"]);
+        if random.one_in(hostile) {
+            const PARTS: [&str; 34] = [
+                "v",
+                "f",
+                "vn",
+                "vt",
+                "l",
+                "p",
+                "o it",
+                "g",
+                "s 1",
+                "usemtl red",
+                "mtllib a.mtl",
+                "#",
+                "# no",
+                "\\",
+                "\\\n",
+                "\\\r\n",
+                "1",
+                "-1",
+                "+2",
+                "0",
+                "1/2",
+                "2//3",
+                "3/\\",
+                "-900",
+                "99999999",
+                "4294967297",
+                "nan",
+                "inf",
+                "1e400",
+                "0x1",
+                "1.5e-3",
+                "\u{e9}",
+                "\u{feff}",
+                "curv2",
+            ];
+            let words: Vec<&str> = (0..random.below(6)).map(|_| random.pick(&PARTS)).collect();
+            return words.join(blank) + end;
+        }
+        let mut text = random.pick(&["", "", "", "", " ", "\t"]).to_owned();
+        if *vertices < 3 || random.one_in(2) {
+            *vertices += 1;
+            let number = |random: &mut oracle::Random| match random.below(4) {
+                0 => format!("{}", random.whole(-9, 9)),
+                1 => format!("{:?}", random.uniform()),
+                _ => format!("{:.6}", random.within(-20.0, 20.0)),
+            };
+            let count = random.pick(&[3, 3, 3, 4]);
+            text += "v";
+            (0..count).for_each(|_| text += &format!("{blank}{}", number(random)));
+            if count == 3 && random.one_in(5) {
+                (0..3).for_each(|_| text += &format!("{blank}{:.3}", random.share()));
+            }
+        } else {
+            text += "f";
+            let slash = random.pick(&["", "", "/1", "//2", "/3/4"]);
+            let forward = random.one_in(9);
+            for _ in 0..random.pick(&[3, 3, 3, 4, 5]) {
+                let corner = 1 + random.below(*vertices + if forward { 3 } else { 0 });
+                let back = !forward && random.one_in(3);
+                let number = if back { format!("-{corner}") } else { corner.to_string() };
+                text += &format!("{blank}{number}{slash}");
+            }
+        }
+        text + random.pick(&["", "", "", "", "", " # remark", "\\\n"]) + end
+    }
+
+    #[test]
+    fn the_quick_way_reads_as_the_slow_one_does() {
+        let random = &mut oracle::Random::new(31);
+        let (mut good, rounds) = (0, oracle::cases(100_000) / 10);
+        for round in 0..rounds {
+            // (Blocks have a kilobyte here.)
+            let hostile = random.pick(&[30, 300, 3000, u64::MAX]);
+            let (mut text, mut vertices) = (random.pick(&["", "", "\u{feff}", "# it\n"]).to_owned(), 0);
+            (0..random.below(if round % 8 == 0 { 600 } else { 60 }))
+                .for_each(|_| text += &line(random, &mut vertices, hostile));
+            if random.one_in(4) {
+                text.truncate(text.trim_end().len());
+            }
+            good += usize::from(assert_read_alike(text.as_bytes()));
+        }
+        assert!((rounds / 10..rounds).contains(&good), "{good} of {rounds}");
+    }
+
+    #[test]
+    fn long_statements_are_read_alike() {
+        let triangle = format!("{SQUARE}f 1 2 3\n");
+        // Lines that all end in a backslash, and go on or not; statements across many blocks, and too long ones.
+        for text in [
+            format!("{triangle}{}", "# no\\\n".repeat(1000)),
+            format!("{triangle}{}f 1 2 3\n", "# no\\\r\n".repeat(1000)),
+            format!("{SQUARE}f 1 2{}3\nf 1 2 3\n", "\\\n".repeat(5000)),
+            format!("{SQUARE}f 1 2 {}3\\", "\\\r\n".repeat(5000)),
+            format!("{triangle}{}\nf 1 2\n", "x".repeat(LONGEST_LINE - 1)),
+            format!("{triangle}{}\nf 1 2\n", "x".repeat(LONGEST_LINE)),
+            format!("{triangle}{}", "x".repeat(LONGEST_LINE)),
+            format!("{triangle}{}", "\\\n".repeat(LONGEST_LINE)),
+            format!("{triangle}f 1 2\\\n{}", "x".repeat(2 * LONGEST_LINE)),
+        ] {
+            let [quickly, slowly] = [read(text.as_bytes(), "mesh.obj", None), read_slowly(text.as_bytes())];
+            let [quickly, slowly] = [quickly, slowly].map(|read| read.map_err(|error| error.to_string()));
+            assert_eq!(quickly, slowly, "{} bytes: {}...", text.len(), &text[..80]);
+        }
+    }
+
+    /// Fails after its bytes.
+    struct Broken<'a>(&'a [u8]);
+
+    impl Read for Broken<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            if self.0.is_empty() { Err(io::Error::other("torn")) } else { self.0.read(buffer) }
+        }
+    }
+
+    #[test]
+    fn what_stands_before_a_broken_place_is_read_first() {
+        for (text, message) in
+            [("v 0 0 0\nv 0 0 zero\n", "mesh.obj:2: "), ("v 0 0 0\nv 0 0 zero", "cannot read"), ("", "cannot read")]
+        {
+            let error = read(Broken(text.as_bytes()), "mesh.obj", None).unwrap_err().to_string();
+            assert!(error.starts_with(message), "{text:?}: {error}");
+        }
     }
 }

@@ -12,7 +12,7 @@ use std::io::{self, BufRead, Read};
 
 use glam::DVec3;
 
-use super::mesh::{FaceColor, Faces, Mesh, Vertex};
+use super::mesh::{FaceColor, Faces, Mesh, Vertices};
 use super::problem::{FileProblem, ImportError, LineProblem};
 use super::words::{Words, number, shown};
 
@@ -244,7 +244,7 @@ impl<R: BufRead> Reader<R> {
     /// Reads all elements; an error comes with the element and its number.
     fn mesh(&mut self, elements: &[Element]) -> Result<Mesh, (String, Broken)> {
         let (mut mesh, mut faces) = (Mesh::default(), Faces::default());
-        let mut vertices: Vec<Vertex> = Vec::new();
+        let mut vertices = Vertices::default();
         let mut corners = Vec::new();
         for element in elements {
             let vertex = element.name == b"vertex";
@@ -289,14 +289,12 @@ impl<R: BufRead> Reader<R> {
         Ok(mesh)
     }
 
-    fn vertex(&self, vertices: &mut Vec<Vertex>, values: &[f64; 6], color: Option<DVec3>) -> Result<(), LineProblem> {
+    fn vertex(&self, vertices: &mut Vertices, values: &[f64; 6], color: Option<DVec3>) -> Result<(), LineProblem> {
         let position = DVec3::new(values[0], values[1], values[2]);
         if !position.is_finite() {
             return Err(LineProblem::Coordinate);
         }
-        vertices.try_reserve(1).map_err(|_| LineProblem::MeshMemory)?;
-        vertices.push((position, color));
-        Ok(())
+        vertices.try_push(position, color).map_err(|_| LineProblem::MeshMemory)
     }
 
     fn face(
@@ -304,7 +302,7 @@ impl<R: BufRead> Reader<R> {
         mesh: &mut Mesh,
         faces: &mut Faces,
         corners: &[usize],
-        vertices: &[Vertex],
+        vertices: &Vertices,
         color: FaceColor,
     ) -> Result<(), LineProblem> {
         if corners.len() < 3 {

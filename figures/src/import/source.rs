@@ -62,7 +62,7 @@ pub(crate) struct Source {
     ending: String,
     /// Its first bytes.
     start: Vec<u8>,
-    rest: Box<dyn Read>,
+    rest: Box<dyn Read + Send>,
     /// Its length in bytes; 0 if that is not known.
     pub(crate) length: u64,
 }
@@ -72,8 +72,8 @@ impl Source {
         let stdin = path == Path::new("-");
         let name = if stdin { "stdin".to_owned() } else { file_name(path) };
         let failed = |source| FileProblem::Read { path: name.clone(), source };
-        let (mut rest, mut length): (Box<dyn Read>, u64) = if stdin {
-            (Box::new(io::stdin().lock()), 0)
+        let (mut rest, mut length): (Box<dyn Read + Send>, u64) = if stdin {
+            (Box::new(io::stdin()), 0)
         } else {
             let file = File::open(path).map_err(failed)?;
             let length = file.metadata().map_or(0, |metadata| metadata.len());
@@ -102,7 +102,7 @@ impl Source {
     }
 
     /// All of its bytes.
-    pub(crate) fn reader(&mut self) -> BufReader<Box<dyn Read>> {
+    pub(crate) fn reader(&mut self) -> BufReader<Box<dyn Read + Send>> {
         let rest = std::mem::replace(&mut self.rest, Box::new(io::empty()));
         BufReader::with_capacity(1 << 16, Box::new(Cursor::new(self.start.clone()).chain(rest)))
     }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use foldhash::fast::RandomState;
 use glam::DVec3;
 use rt_geom::Sphere;
 
@@ -67,7 +68,7 @@ impl Spheres {
 }
 
 /// Adds a list to another, without a copy if that one is empty.
-fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
+pub(super) fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
     if list.is_empty() { *list = more } else { list.extend(more) }
 }
 
@@ -110,19 +111,25 @@ pub(super) enum AtomColor {
 pub(super) const REMEMBERED: usize = 1 << 16;
 
 /// The indices of the colours so far.
-#[derive(Default)]
 pub(super) struct Palette {
-    elements: HashMap<u8, u32>,
-    colors: HashMap<[u64; 3], u32>,
+    elements: [Option<u32>; 256],
+    colors: HashMap<[u64; 3], u32, RandomState>,
     /// The last colour and its number: neighbours in a file are often of one colour.
     last: Option<([u64; 3], u32)>,
 }
 
+impl Default for Palette {
+    fn default() -> Self {
+        Self { elements: [None; 256], colors: HashMap::default(), last: None }
+    }
+}
+
 impl Palette {
+    #[inline]
     pub(super) fn index(&mut self, paint: AtomColor, colors: &mut Vec<DVec3>) -> Result<u32, LineProblem> {
         let color = match paint {
-            AtomColor::Element(element) => match self.elements.get(&element) {
-                Some(&index) => return Ok(index),
+            AtomColor::Element(element) => match self.elements[usize::from(element)] {
+                Some(index) => return Ok(index),
                 None => elements::color(element),
             },
             AtomColor::Color(color) => color,
@@ -145,7 +152,7 @@ impl Palette {
             }
         };
         if let AtomColor::Element(element) = paint {
-            self.elements.insert(element, index);
+            self.elements[usize::from(element)] = Some(index);
         }
         self.last = Some((bits, index));
         Ok(index)

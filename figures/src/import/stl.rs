@@ -8,7 +8,7 @@ use std::io::{self, BufRead, Read};
 
 use glam::DVec3;
 
-use super::mesh::{FaceColor, Faces, Mesh, Vertex};
+use super::mesh::{FaceColor, Faces, Mesh, Vertices};
 use super::problem::{FileProblem, ImportError, LineProblem};
 use super::words::{Words, number, shown};
 
@@ -57,7 +57,7 @@ fn floats(facet: &[u8; 50]) -> impl Iterator<Item = f32> {
 fn text(mut source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
     let (mut mesh, mut faces) = (Mesh::default(), Faces::default());
     let (mut bytes, mut line) = (Vec::new(), 0);
-    let mut corners: Vec<Vertex> = Vec::new();
+    let mut corners = Vertices::default();
     loop {
         bytes.clear();
         let read = source.by_ref().take(LONGEST).read_until(b'\n', &mut bytes);
@@ -82,7 +82,7 @@ fn text(mut source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
                 if corners.len() == 3 {
                     return Err(refuse(LineProblem::Loop(4)));
                 }
-                corners.push((corner, None));
+                corners.push(corner, None);
             }
             b"endloop" => {
                 if corners.len() != 3 {
@@ -110,7 +110,7 @@ fn binary(start: &[u8], mut source: impl Read, name: &str) -> Result<Mesh, Impor
         return Err(refuse("neither a text that begins with solid nor 84 bytes long".to_owned()).into());
     };
     let (mut mesh, mut faces) = (Mesh::default(), Faces::default());
-    let mut colored = false;
+    let (mut corners, mut colored) = (Vertices::default(), false);
     for triangle in 1..=count {
         let mut facet = [0; 50];
         match source.read_exact(&mut facet) {
@@ -121,10 +121,12 @@ fn binary(start: &[u8], mut source: impl Read, name: &str) -> Result<Mesh, Impor
         }
         let mut numbers = [0.0; 12];
         numbers.iter_mut().zip(floats(&facet)).for_each(|(place, number)| *place = f64::from(number));
-        let corners = [3, 6, 9].map(|at| (DVec3::new(numbers[at], numbers[at + 1], numbers[at + 2]), None));
-        if !corners.iter().all(|(corner, _)| corner.is_finite()) {
+        let positions = [3, 6, 9].map(|at| DVec3::new(numbers[at], numbers[at + 1], numbers[at + 2]));
+        if !positions.iter().all(|corner| corner.is_finite()) {
             return Err(refuse(format!("triangle {triangle}: a coordinate must be finite")).into());
         }
+        corners.clear();
+        positions.into_iter().for_each(|corner| corners.push(corner, None));
         let added = faces.add(&mut mesh, &[0, 1, 2], &corners, FaceColor::Unsaid);
         added.map_err(|problem| refuse(problem.to_string()))?;
         colored |= facet[48..] != [0, 0];

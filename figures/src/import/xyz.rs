@@ -7,33 +7,32 @@
 //! unless another is asked for; a note says what follows it. Empty lines may stand before a frame. `elements.rs` has the
 //! rule for names that are not symbols.
 //!
-//! The file streams through a buffer of a few megabytes. Each filling ends at a line's end, is cut into pieces at
-//! lines' ends, and the pieces are read in parallel; what they hold is appended in order. So memory is the spheres and
-//! the buffer, and the result does not depend on threads.
+//! The file streams through a buffer of a megabyte, or more where a line is longer. Each filling ends at a line's end, is
+//! cut into pieces at lines' ends, and the pieces are read in parallel; what they hold is appended in order while the
+//! next filling is read. So memory is the spheres and the buffer, and the result does not depend on threads.
+//!
+//! There are two ways to read a line: a quick one, which takes numbers where they stand, and [`Columns::atom`], which
+//! takes the line apart and says what is wrong with it. The quick one gives up on every line that is not as expected.
 
-use std::io::{self, Read};
+use std::io::Read;
 
 use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::Sphere;
 
-use super::elements::{self, ElementName};
-use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
+use super::blocks::{Broken, LineBlocks, PIECE};
+use super::elements::{self, ElementName, Found};
+use super::problem::{FileProblem, ImportError, LineProblem};
 use super::spheres::{AtomColor, Names, Options, Palette, Spheres};
-use super::words::{Words, number, shown};
+use super::words::{Scanner, Words, number, shown};
 use crate::text::without_mark;
-
-/// The size of the buffer.
-const BUFFER: usize = LONGEST_LINE;
-/// Fewer bytes than this are not worth a thread.
-const PIECE: usize = 64 << 10;
 
 /// Reads spheres from `source`, which errors call `name` and which has about `length` bytes (0: unknown).
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub fn read(source: impl Read, length: u64, name: &str, options: Options) -> Result<Spheres, ImportError> {
-    let mut blocks = LineBlocks { source, buffer: Vec::new(), start: 0, ended: false };
+pub fn read(source: impl Read + Send, length: u64, name: &str, options: Options) -> Result<Spheres, ImportError> {
+    let mut blocks = LineBlocks::new(source);
     let mut line = 0;
     read_lines(&mut blocks, length, options, &mut line).map_err(|failure| match failure {
         Broken::Read(source) => FileProblem::Read { path: name.to_owned(), source }.into(),
@@ -41,21 +40,9 @@ pub fn read(source: impl Read, length: u64, name: &str, options: Options) -> Res
     })
 }
 
-/// Why reading ended early.
-enum Broken {
-    Read(io::Error),
-    Line(LineProblem),
-}
-
-impl From<LineProblem> for Broken {
-    fn from(problem: LineProblem) -> Self {
-        Self::Line(problem)
-    }
-}
-
 /// Reads the file; on failure `line` is where.
 fn read_lines(
-    blocks: &mut LineBlocks<impl Read>,
+    blocks: &mut LineBlocks<impl Read + Send>,
     length: u64,
     options: Options,
     line: &mut usize,
@@ -96,47 +83,74 @@ fn read_lines(
     let likely = usize::try_from(expected.min(length / 8)).unwrap_or(0);
     found.spheres.try_reserve_exact(likely).map_err(no_memory)?;
     found.color_indices.try_reserve_exact(likely).map_err(no_memory)?;
-    let mut palette = Palette::default();
-    let mut names = Names::default();
-    *line += 1;
-    while (found.spheres.len() as u64) < expected {
-        let block = blocks.next()?;
-        if block.is_empty() {
-            return Err(LineProblem::Short { expected, found: found.spheres.len() as u64 }.into());
+    let mut merge = Merge { found, palette: Palette::default(), names: Names::default(), line: *line + 1 };
+    // While the atoms of one block are appended, the next is read. Both lists keep their memory.
+    let (mut ready, mut next): (Vec<AtomPiece>, Vec<AtomPiece>) = (Vec::new(), Vec::new());
+    let mut missing = expected;
+    loop {
+        let (merged, read) = rayon::join(
+            || ready.iter_mut().try_for_each(|piece| merge.append(piece, &layout, expected)),
+            || layout.block(blocks, missing, &mut next),
+        );
+        *line = merge.line;
+        merged?;
+        missing = read?;
+        if next.is_empty() {
+            break;
         }
-        let missing = usize::try_from(expected - found.spheres.len() as u64).unwrap_or(usize::MAX);
-        let pieces = pieces(block, missing);
-        let read = pieces.iter().map(|piece| piece.len()).sum::<usize>();
-        let behind = block.len() - read;
-        for piece in pieces.par_iter().map(|piece| layout.atoms(piece)).collect::<Vec<_>>() {
-            found.spheres.try_reserve(piece.atoms.len()).map_err(no_memory)?;
-            found.color_indices.try_reserve(piece.atoms.len()).map_err(no_memory)?;
-            for (sphere, paint) in piece.atoms {
-                found.spheres.push(sphere);
-                found.color_indices.push(palette.index(paint, &mut found.colors)?);
-                *line += 1;
-            }
-            if let Some(problem) = piece.problem {
-                return Err(problem.into());
-            }
-            for (name, element) in piece.names.0 {
-                names.add(&name, element);
-            }
-        }
-        blocks.start -= behind;
+        std::mem::swap(&mut ready, &mut next);
+    }
+    let Merge { mut found, names, .. } = merge;
+    if missing > 0 {
+        return Err(LineProblem::Short { expected, found: found.spheres.len() as u64 }.into());
     }
     found.warnings.extend(names.note());
-    blocks.what_follows(*line, options.frame, &mut found)?;
+    what_follows(blocks, *line, options.frame, &mut found)?;
     Ok(found)
 }
 
+/// What was appended so far.
+struct Merge {
+    found: Spheres,
+    palette: Palette,
+    names: Names,
+    /// The number of the next line.
+    line: usize,
+}
+
+impl Merge {
+    /// Appends the atoms of the next piece; on failure `line` is where.
+    fn append(&mut self, piece: &mut AtomPiece, layout: &Columns, expected: u64) -> Result<(), LineProblem> {
+        let no_memory = |_| LineProblem::SphereMemory(expected);
+        let count = piece.spheres.len();
+        self.found.spheres.try_reserve(count).map_err(no_memory)?;
+        self.found.color_indices.try_reserve(count).map_err(no_memory)?;
+        self.found.spheres.extend_from_slice(&piece.spheres);
+        let first = self.line;
+        for at in 0..count {
+            let paint = match layout.painted() {
+                Painted::Own => AtomColor::Color(piece.colors[at]),
+                Painted::AsElements => AtomColor::Element(piece.elements[at]),
+                Painted::Alike => AtomColor::Nothing,
+            };
+            self.line = first + at;
+            self.found.color_indices.push(self.palette.index(paint, &mut self.found.colors)?);
+        }
+        self.line = first + count;
+        for (name, element) in &piece.names.0 {
+            self.names.add(name, *element);
+        }
+        piece.problem.take().map_or(Ok(()), Err)
+    }
+}
+
 /// Cuts a block of whole lines into pieces of whole lines, at most `lines` lines in all.
-fn pieces(block: &[u8], lines: usize) -> Vec<&[u8]> {
+fn cut(block: &[u8], lines: usize) -> Vec<&[u8]> {
     let size = (block.len() / rayon::current_num_threads()).max(PIECE);
     let mut rest = block;
     let mut pieces = Vec::new();
     while !rest.is_empty() {
-        let end = match rest.get(size..).and_then(|later| later.iter().position(|&byte| byte == b'\n')) {
+        let end = match rest.get(size..).and_then(|later| memchr::memchr(b'\n', later)) {
             Some(position) => size + position + 1,
             None => rest.len(),
         };
@@ -147,103 +161,45 @@ fn pieces(block: &[u8], lines: usize) -> Vec<&[u8]> {
     // Lines after the last atom, another frame or anything else, are not read.
     let mut left = lines;
     for piece in &mut pieces {
-        let count = piece.iter().filter(|&&byte| byte == b'\n').count();
+        let count = memchr::memchr_iter(b'\n', piece).count();
         if count > left {
-            let ends = piece.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
-            *piece = &piece[..[0].into_iter().chain(ends).nth(left).expect("there are more lines than that")];
+            let end = left.checked_sub(1).and_then(|last| memchr::memchr_iter(b'\n', piece).nth(last));
+            *piece = &piece[..end.map_or(0, |end| end + 1)];
         }
         left -= count.min(left);
     }
     pieces
 }
 
-/// The source in blocks that end at a line's end.
-struct LineBlocks<R> {
-    source: R,
-    /// What was read; the bytes from `start` on are still to be returned.
-    buffer: Vec<u8>,
-    start: usize,
-    ended: bool,
-}
-
-impl<R: Read> LineBlocks<R> {
-    /// Fills the buffer up as far as the source goes.
-    fn fill(&mut self) -> Result<(), Broken> {
-        self.buffer.drain(..self.start);
-        self.start = 0;
-        let missing = BUFFER - self.buffer.len();
-        if !self.ended && missing > 0 {
-            let read = self.source.by_ref().take(missing as u64).read_to_end(&mut self.buffer);
-            self.ended = read.map_err(Broken::Read)? < missing;
-            if self.ended && self.buffer.last().is_some_and(|&last| last != b'\n') {
-                self.buffer.push(b'\n');
-            }
-        }
-        Ok(())
-    }
-
-    /// Returns whole lines, as many as the buffer holds; none at the end.
-    fn next(&mut self) -> Result<&[u8], Broken> {
-        self.up_to(|bytes| bytes.iter().rposition(|&byte| byte == b'\n'))
-    }
-
-    /// Returns one line, without its end; an empty one at the end.
-    fn line(&mut self) -> Result<&[u8], Broken> {
-        let line = self.up_to(|bytes| bytes.iter().position(|&byte| byte == b'\n'))?;
-        Ok(line.strip_suffix(b"\n").unwrap_or(line))
-    }
-
-    /// Returns the bytes up to the line end that `find` finds in the buffer; none at the end.
-    fn up_to(&mut self, find: impl Fn(&[u8]) -> Option<usize>) -> Result<&[u8], Broken> {
-        if !self.buffer[self.start..].contains(&b'\n') {
-            self.fill()?;
-        }
-        let from = self.start;
-        match find(&self.buffer[from..]) {
-            Some(end) => {
-                self.start += end + 1;
-                Ok(&self.buffer[from..self.start])
-            }
-            None if self.buffer.len() == from => Ok(&[]),
-            None => Err(LineProblem::Long.into()),
-        }
-    }
-
-    /// Whether everything was returned.
-    fn is_empty(&mut self) -> Result<bool, Broken> {
-        if self.buffer.len() == self.start {
-            self.fill()?;
-        }
-        Ok(self.buffer.len() == self.start)
-    }
-
-    /// Says what follows the last atom, if it is more than space; `line` is the next one's number.
-    fn what_follows(&mut self, mut line: usize, frame: u64, found: &mut Spheres) -> Result<(), Broken> {
-        while !self.is_empty()? {
-            let next = match self.line() {
-                Ok(next) => next.trim_ascii(),
-                // A line without an end is something that follows too.
-                Err(Broken::Line(_)) => b"...",
-                Err(failure) => return Err(failure),
-            };
-            if !next.is_empty() {
-                match text(next).parse::<u64>() {
-                    Ok(_) => {
-                        found
-                            .notes
-                            .push(format!("frame {frame} is drawn; another one follows in line {line} (--frame)"));
-                    }
-                    Err(_) => {
-                        let warning = format!("what follows the last atom is passed over, from line {line} on");
-                        found.warnings.push(warning);
-                    }
+/// Says what follows the last atom, if it is more than space; `line` is the next one's number.
+fn what_follows(
+    blocks: &mut LineBlocks<impl Read>,
+    mut line: usize,
+    frame: u64,
+    found: &mut Spheres,
+) -> Result<(), Broken> {
+    while !blocks.is_empty()? {
+        let next = match blocks.line() {
+            Ok(next) => next.trim_ascii(),
+            // A line without an end is something that follows too.
+            Err(Broken::Line(_)) => b"...",
+            Err(failure) => return Err(failure),
+        };
+        if !next.is_empty() {
+            match text(next).parse::<u64>() {
+                Ok(_) => {
+                    found.notes.push(format!("frame {frame} is drawn; another one follows in line {line} (--frame)"));
                 }
-                break;
+                Err(_) => {
+                    let warning = format!("what follows the last atom is passed over, from line {line} on");
+                    found.warnings.push(warning);
+                }
             }
-            line += 1;
+            break;
         }
-        Ok(())
+        line += 1;
     }
+    Ok(())
 }
 
 /// Which columns hold what.
@@ -257,11 +213,52 @@ struct Columns {
     columns: usize,
 }
 
+/// What a column is to the quick way of reading.
+#[derive(Clone, Copy)]
+enum Slot {
+    /// The place of its number: 0 to 2 the position, 3 the radius, 4 to 6 the colour.
+    Number(usize),
+    Name,
+    Other,
+}
+
+/// Where the colours of atoms come from.
+#[derive(Clone, Copy, PartialEq)]
+enum Painted {
+    Own,
+    AsElements,
+    Alike,
+}
+
 /// What was read from a piece of a file: atoms, and the error in the line after them, if any.
+#[derive(Default)]
 struct AtomPiece {
-    atoms: Vec<(Sphere, AtomColor)>,
+    spheres: Vec<Sphere>,
+    /// The elements, or the colours, where [`Painted`] says so.
+    elements: Vec<u8>,
+    colors: Vec<DVec3>,
     names: Names,
     problem: Option<LineProblem>,
+}
+
+impl AtomPiece {
+    fn clear(&mut self) {
+        let Self { spheres, elements, colors, names, problem } = self;
+        spheres.clear();
+        elements.clear();
+        colors.clear();
+        names.0.clear();
+        *problem = None;
+    }
+
+    fn push(&mut self, (sphere, paint): (Sphere, AtomColor)) {
+        self.spheres.push(sphere);
+        match paint {
+            AtomColor::Element(element) => self.elements.push(element),
+            AtomColor::Color(color) => self.colors.push(color),
+            AtomColor::Nothing => {}
+        }
+    }
 }
 
 impl Columns {
@@ -296,18 +293,123 @@ impl Columns {
         Ok(layout)
     }
 
+    fn painted(&self) -> Painted {
+        match (self.color, self.element) {
+            (Some(_), _) => Painted::Own,
+            (None, Some(_)) if self.options.colored => Painted::AsElements,
+            (None, _) => Painted::Alike,
+        }
+    }
+
+    /// Whether something depends on an atom's element; only then it has to be known.
+    fn needs_element(&self) -> bool {
+        self.painted() == Painted::AsElements || (self.radius.is_none() && self.options.radius.is_none())
+    }
+
+    fn slots(&self) -> Vec<Slot> {
+        let slot = |at: usize| match at {
+            _ if self.color.is_some_and(|first| (first..first + 3).contains(&at)) => {
+                Slot::Number(4 + at - self.color.unwrap_or(at))
+            }
+            _ if self.radius == Some(at) => Slot::Number(3),
+            _ if (self.position..self.position + 3).contains(&at) => Slot::Number(at - self.position),
+            _ if self.element == Some(at) && self.needs_element() => Slot::Name,
+            _ => Slot::Other,
+        };
+        (0..self.columns).map(slot).collect()
+    }
+
+    /// Reads the next block, at most so many atoms of it, into pieces; returns how many are still missing. There are no
+    /// pieces at the end.
+    fn block(
+        &self,
+        blocks: &mut LineBlocks<impl Read>,
+        missing: u64,
+        pieces: &mut Vec<AtomPiece>,
+    ) -> Result<u64, Broken> {
+        if missing == 0 {
+            pieces.clear();
+            return Ok(0);
+        }
+        let block = blocks.next()?;
+        let texts = cut(block, usize::try_from(missing).unwrap_or(usize::MAX));
+        let behind = block.len() - texts.iter().map(|text| text.len()).sum::<usize>();
+        pieces.resize_with(texts.len(), AtomPiece::default);
+        let slots = self.slots();
+        pieces.par_iter_mut().zip(texts).for_each(|(piece, text)| self.atoms(text, &slots, piece));
+        blocks.take_back(behind);
+        Ok(missing - pieces.iter().map(|piece| piece.spheres.len() as u64).sum::<u64>())
+    }
+
     /// Reads whole lines.
-    fn atoms(&self, lines: &[u8]) -> AtomPiece {
-        let mut atoms = Vec::with_capacity(lines.len() / 24);
+    fn atoms(&self, lines: &[u8], slots: &[Slot], piece: &mut AtomPiece) {
+        piece.clear();
         let mut columns = Vec::with_capacity(self.columns);
-        let mut names = Names::default();
-        for line in lines.split_inclusive(|&byte| byte == b'\n') {
-            match self.atom(line, &mut columns, &mut names) {
-                Ok(atom) => atoms.push(atom),
-                Err(problem) => return AtomPiece { atoms, names, problem: Some(problem) },
+        let mut found = Found::default();
+        let mut scanner = Scanner::new(lines);
+        while scanner.position() < lines.len() {
+            let start = scanner.position();
+            if let Some(atom) = self.quick_atom(&mut scanner, slots, &mut found, &mut piece.names) {
+                piece.push(atom);
+                continue;
+            }
+            scanner.set_position(start);
+            scanner.skip_line();
+            match self.atom(&lines[start..scanner.position()], &mut columns, &mut piece.names) {
+                Ok(atom) => piece.push(atom),
+                Err(problem) => {
+                    piece.problem = Some(problem);
+                    return;
+                }
             }
         }
-        AtomPiece { atoms, names, problem: None }
+    }
+
+    /// Reads a line as [`Self::atom`] does, if nothing is wrong with it; otherwise that says what.
+    fn quick_atom(
+        &self,
+        scanner: &mut Scanner,
+        slots: &[Slot],
+        found: &mut Found,
+        names: &mut Names,
+    ) -> Option<(Sphere, AtomColor)> {
+        let (mut values, mut name) = ([0.0; 8], &b""[..]);
+        for &slot in slots {
+            match slot {
+                Slot::Number(at) => values[at % 8] = scanner.number()?,
+                Slot::Name => name = scanner.word()?,
+                Slot::Other => drop(scanner.word()?),
+            }
+        }
+        scanner.skip_line();
+        let [x, y, z, own_radius, red, green, blue, _] = values;
+        let element = match self.element.filter(|_| self.needs_element()) {
+            Some(_) => match found.find(name)? {
+                ElementName::Plain(element) => Some(element),
+                ElementName::Label(element) => {
+                    names.add(name, element);
+                    Some(element)
+                }
+            },
+            None => None,
+        };
+        let radius = match (self.radius, self.options.radius) {
+            (Some(_), _) => own_radius,
+            (None, Some(radius)) => radius,
+            (None, None) => elements::radius(element?),
+        };
+        let color = DVec3::new(red, green, blue);
+        let is_color = color.cmpge(DVec3::ZERO).all() && color.cmple(DVec3::ONE).all();
+        if !is_color || radius < 0.0 {
+            return None;
+        }
+        let sphere = Sphere::new(self.options.scale * DVec3::new(x, y, z), self.options.scale * radius).ok()?;
+        let paint = match self.painted() {
+            Painted::Own => AtomColor::Color(color),
+            Painted::AsElements => element.map_or(AtomColor::Nothing, AtomColor::Element),
+            Painted::Alike => AtomColor::Nothing,
+        };
+        Some((sphere, paint))
     }
 
     /// Reads a line; `columns` is a place to work in.
@@ -334,10 +436,7 @@ impl Columns {
         if let Some(channel) = color.and_then(|color| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c))) {
             return Err(LineProblem::SphereColor(channel));
         }
-        // An element has to be known only where something depends on it.
-        let needed =
-            (self.options.colored && color.is_none()) || (self.radius.is_none() && self.options.radius.is_none());
-        let element = match self.element.filter(|_| needed) {
+        let element = match self.element.filter(|_| self.needs_element()) {
             Some(at) => match elements::find(columns[at]) {
                 Some(ElementName::Plain(element)) => Some(element),
                 Some(ElementName::Label(element)) => {
@@ -390,6 +489,9 @@ fn text(line: &[u8]) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
+    use super::super::problem::LONGEST_LINE;
     use super::super::spheres::REMEMBERED;
     use super::*;
 
@@ -522,7 +624,7 @@ mod tests {
         assert!(found.notes.is_empty(), "{:?}", found.notes);
         assert_eq!(second(3).unwrap_err().to_string(), "atoms.xyz:9: there is no frame 3; the file has 2");
         assert_eq!(notes(&format!("{frame}\nC 1 2 3")), ["what follows the last atom is passed over, from line 5 on"]);
-        let long = format!("{frame}{}", "C".repeat(BUFFER + 1));
+        let long = format!("{frame}{}", "C".repeat(LONGEST_LINE + 1));
         assert_eq!(notes(&long), ["what follows the last atom is passed over, from line 4 on"]);
     }
 
@@ -541,5 +643,144 @@ mod tests {
         }
         let error = parse(&text, Options::default()).unwrap_err();
         assert_eq!(error.to_string(), "atoms.xyz:123459: expected a number, found \"three\"");
+    }
+
+    /// Reads the first frame line by line, with the library's own parser: positions and radii, or the error.
+    fn read_slowly(text: &str, colored: bool) -> Result<Vec<[f64; 4]>, String> {
+        let mut lines = text.split_inclusive('\n').zip(1..);
+        let (count, comment) = (lines.next().unwrap().0.trim().parse::<usize>().unwrap(), lines.next().unwrap().0);
+        let mut found = Vec::new();
+        for (line, place) in lines.take(count) {
+            found.push(
+                ball_slowly(line, comment.trim().is_empty(), colored).map_err(|e| format!("atoms.xyz:{place}: {e}"))?,
+            );
+        }
+        if found.len() < count {
+            let place = found.len() + 3;
+            return Err(format!("atoms.xyz:{place}: the file ends after {} of {count} atoms", found.len()));
+        }
+        Ok(found)
+    }
+
+    /// A line with a name and a position, or a position, a radius and perhaps a colour.
+    fn ball_slowly(line: &str, named: bool, colored: bool) -> Result<[f64; 4], String> {
+        let words: Vec<&str> = line.split(|c: char| c.is_ascii_whitespace()).filter(|word| !word.is_empty()).collect();
+        let first = usize::from(named);
+        let expected = first
+            + if named {
+                3
+            } else if colored {
+                7
+            } else {
+                4
+            };
+        if words.len() < expected {
+            return Err(format!("expected {expected} columns, found {}", words.len()));
+        }
+        let number =
+            |at: usize| words[at].parse::<f64>().map_err(|_| format!("expected a number, found {:?}", words[at]));
+        let center = [number(first)?, number(first + 1)?, number(first + 2)?];
+        if !center.iter().all(|x| x.is_finite()) {
+            return Err(format!(
+                "position must be finite, found {}",
+                shown(words[first..first + 3].join(" ").as_bytes())
+            ));
+        }
+        if colored {
+            let color = [number(4)?, number(5)?, number(6)?];
+            if let Some(channel) = color.iter().find(|channel| !(0.0..=1.0).contains(*channel)) {
+                return Err(format!("color must be from 0 to 1, found {channel}"));
+            }
+        }
+        let radius = match (named, words[0]) {
+            (false, _) => number(3)?,
+            (true, "C") => 1.77,
+            (true, "OW") => 1.5,
+            (true, "Cl") => 1.82,
+            (true, word) => {
+                let expected = "expected a symbol such as C, a label such as C1 or OW, or an atomic number";
+                return Err(format!("unknown element {word:?}; {expected}"));
+            }
+        };
+        match radius {
+            ..0.0 => Err(format!("radius must not be negative, found {radius}")),
+            0.0..f64::INFINITY => Ok([center[0], center[1], center[2], radius]),
+            _ => Err(format!("radius must be finite, found {radius}")),
+        }
+    }
+
+    #[test]
+    fn the_quick_way_reads_as_the_slow_one_does() {
+        let random = &mut oracle::Random::new(32);
+        let (mut good, rounds) = (0, oracle::cases(100_000) / 10);
+        for round in 0..rounds {
+            let plain = random.one_in(2);
+            let colored = !plain && random.one_in(2);
+            let comment = match (plain, colored) {
+                (true, _) => "",
+                (_, false) => "Properties=pos:R:3:radius:R:1",
+                (_, true) => "Properties=pos:R:3:radius:R:1:color:R:3",
+            };
+            let hostile = random.pick(&[20, 200, 2000, u64::MAX]);
+            let count = 1 + random.below(if round % 8 == 0 { 600 } else { 60 });
+            let mut text = format!("{}\n{comment}\n", if random.one_in(20) { count + 1 } else { count });
+            for _ in 0..count {
+                let blank = random.pick(&[" ", " ", " ", "\t", "  ", " \t", "\x0c"]);
+                let mut words = Vec::new();
+                if plain {
+                    words.push(random.pick(&["C", "C", "OW", "Cl"]).to_owned());
+                }
+                for at in 0..if plain {
+                    3
+                } else if colored {
+                    7
+                } else {
+                    4
+                } {
+                    let limit = if at < 3 { -20.0 } else { 0.0 };
+                    words.push(match (at, random.below(5)) {
+                        (4.., _) => format!("{:.3}", random.share()),
+                        (_, 0) => format!("{:?}", random.within(limit, 20.0)),
+                        (_, 1) => format!("{:e}", random.within(limit, 20.0)),
+                        (_, digits) => format!("{:.*}", 3 * (digits - 2), random.within(limit, 20.0)),
+                    });
+                }
+                if random.one_in(hostile) {
+                    const PARTS: [&str; 14] = [
+                        "",
+                        "-1",
+                        "+.5",
+                        "-0",
+                        "1e999",
+                        "nan",
+                        "-inf",
+                        "0x10",
+                        "1,5",
+                        "1e",
+                        "--1",
+                        "1.5.5",
+                        "\u{b2}",
+                        "999999999999999999999",
+                    ];
+                    let at = usize::from(plain) + random.below(words.len() - usize::from(plain));
+                    words[at] = random.pick(&PARTS).to_owned();
+                }
+                text += &(words.join(blank) + random.pick(&["\n", "\n", "\r\n", " \n", " and more\n"]));
+            }
+            if random.one_in(4) {
+                text.pop();
+            }
+            let quickly = parse(&text, Options::default());
+            let quickly = quickly.map(|found| {
+                let sphere =
+                    |sphere: &Sphere| [sphere.center().x, sphere.center().y, sphere.center().z, sphere.radius()];
+                found.spheres.iter().map(|s| sphere(s).map(f64::to_bits)).collect::<Vec<_>>()
+            });
+            let slowly = read_slowly(&text, colored);
+            let slowly = slowly.map(|found| found.into_iter().map(|ball| ball.map(f64::to_bits)).collect::<Vec<_>>());
+            good += usize::from(slowly.is_ok());
+            assert_eq!(quickly.map_err(|error| error.to_string()), slowly, "{text:?}");
+        }
+        assert!((rounds / 10..rounds).contains(&good), "{good} of {rounds}");
     }
 }
