@@ -14,7 +14,6 @@ type File = (&'static str, &'static [(&'static str, &'static str, &'static str, 
 
 const FILES: &[File] = &[
     (
-        "Area",
         "Angles",
         &[
             ("TURN_SHARE", "rt-shade/src/mapping.rs", "(share(", ", h_square)"),
@@ -24,7 +23,7 @@ const FILES: &[File] = &[
         ],
     ),
     (
-        "Balls",
+        "Area",
         &[
             ("PER_TERM", "../figures/src/import/polygon.rs", "let error = (", " * count + "),
             ("AT_ONCE", "../figures/src/import/polygon.rs", " * count + ", ") * U * size"),
