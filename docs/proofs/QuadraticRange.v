@@ -116,7 +116,8 @@ Qed.
 Lemma far_from_midpoint : forall n d k f, F n -> F d -> n <> 0 -> d <> 0 -> (2 ^ 52 <= k < 2 ^ 53)%Z -> 0 < n / d ->
   let m := IZR (2 * k + 1) * bp f in bp (-110) * (n / d) < Rabs (n / d - m).
 Proof.
-  intros n d k f Fn Fd N0 D0 K Q0 m. destruct (Rlt_or_le (bp (-110) * (n / d)) (Rabs (n / d - m))) as [L|L]; [exact L|exfalso].
+  intros n d k f Fn Fd N0 D0 K Q0 m. destruct (Rlt_or_le (bp (-110) * (n / d)) (Rabs (n / d - m))) as [L|L]; [exact
+    L|exfalso].
   assert (G : forall x, F x -> x <> 0 -> exists i e, x = IZR i * bp e /\ (0 < Z.abs i < 2 ^ 53)%Z).
   { intros x Fx X0. exists (Ztrunc (scaled_mantissa radix2 fexp x)), (cexp radix2 fexp x). split; [exact Fx|].
     set (i := Ztrunc (scaled_mantissa radix2 fexp x)).
@@ -124,7 +125,8 @@ Proof.
     split; [assert (i <> 0%Z) by (intro Z; rewrite Z in E; simpl in E; lra); lia|].
     apply lt_IZR. rewrite abs_IZR. replace (IZR (2 ^ 53)) with (bp 53) by (simpl; lra).
     apply Rmult_lt_reg_r with (bp (cexp radix2 fexp x)); [apply bp_pos|].
-    rewrite <- (Rabs_pos_eq (bp (cexp radix2 fexp x))) at 1 by apply Rlt_le, bp_pos. rewrite <- Rabs_mult, <- E, <- bp_add.
+    rewrite <- (Rabs_pos_eq (bp (cexp radix2 fexp x))) at 1 by apply Rlt_le, bp_pos. rewrite <- Rabs_mult, <- E, <-
+      bp_add.
     eapply Rlt_le_trans; [apply (bpow_mag_gt radix2)|]. apply bp_le. unfold cexp, fexp, FLT_exp. lia. }
   destruct (G n Fn N0) as (i & a & En & Hi). destruct (G d Fd D0) as (j & b & Ed & Hj). clear G.
   set (M := (2 * k + 1)%Z) in *. set (g := Z.min a (f + b)).
@@ -158,7 +160,8 @@ Proof.
   { rewrite <- abs_IZR. replace (bp 53) with (IZR (2 ^ 53)) by (simpl; lra). apply IZR_lt. lia. }
   destruct (Z.min_spec a (f + b)) as [[_ E]|[_ E]]; fold g in E.
   - rewrite En, Rabs_mult, (Rabs_pos_eq (bp a)) in L2 by apply Rlt_le, bp_pos. rewrite E in L2.
-    assert (bp (-110) * bp 53 <= 1) by (rewrite <- bp_add; apply Rle_trans with (bp 0); [apply bp_le; lia | simpl; lra]).
+    assert (bp (-110) * bp 53 <= 1) by (rewrite <- bp_add; apply Rle_trans with (bp 0); [apply bp_le; lia | simpl;
+      lra]).
     pose proof (bp_pos a). pose proof (bp_pos (-110)).
     assert (bp (-110) * Rabs (IZR i) < 1).
     { apply Rlt_le_trans with (bp (-110) * bp 53); [apply Rmult_lt_compat_l|]; lra. }
@@ -233,8 +236,10 @@ Proof.
     { apply Rnot_lt_le. intro N. assert (RN x <= r); [|lra]. apply (round_N_le_midp radix2 fexp even); auto. }
     assert (q <= (r + s) / 2).
     { apply Rnot_lt_le. intro N. assert (HN : s <= RN q).
-      - apply (round_N_ge_midp radix2 fexp even); auto. unfold s. rewrite pred_succ by auto with typeclass_instances. fold s. lra.
-      - pose proof (bp_pos (-1022)). pose proof (succ_gt_id radix2 fexp r ltac:(lra)) as SG. fold s in SG. fold r in HN. lra. }
+      - apply (round_N_ge_midp radix2 fexp even); auto. unfold s. rewrite pred_succ by auto with typeclass_instances.
+        fold s. lra.
+      - pose proof (bp_pos (-1022)). pose proof (succ_gt_id radix2 fexp r ltac:(lra)) as SG. fold s in SG. fold r in
+        HN. lra. }
     apply Rabs_le_inv in H. rewrite Rabs_minus_sym, Rabs_pos_eq in G by lra. lra.
 Qed.
 Lemma rounds_alike : forall n d x, F n -> F d -> d <> 0 -> bp (-1022) < Rabs (RN (n / d)) ->
@@ -286,7 +291,8 @@ Proof.
     assert (/ 2 * 1 <= Rabs a * Rabs c) by (apply Rmult_le_compat; lra). lra.
   - (* a multiple of 2^-504 *)
     assert (D : B' * B' - 4 * a * c = IZR (l * 2 ^ (j + 200) * (l * 2 ^ (j + 200)) - 4 * k * m * 2 ^ 399) * bp (-504)).
-    { rewrite EB, K, M, minus_IZR, !mult_IZR. change (2 ^ 399)%Z with (radix2 ^ 399)%Z. rewrite (IZR_Zpower radix2 399) by lia.
+    { rewrite EB, K, M, minus_IZR, !mult_IZR. change (2 ^ 399)%Z with (radix2 ^ 399)%Z. rewrite (IZR_Zpower radix2
+      399) by lia.
       replace (4 * (IZR k * bp (-53)) * (IZR m * bp (-52))) with (4 * IZR k * IZR m * (bp (-53) * bp (-52))) by ring.
       rewrite <- bp_add. change (-53 + -52)%Z with (399 + -504)%Z. rewrite bp_add.
       change (-504)%Z with (-252 + -252)%Z. rewrite bp_add. ring. }
@@ -307,7 +313,8 @@ Proof.
   assert (AC : / 2 <= Rabs (a * c)).
   { rewrite Rabs_mult. assert (/ 2 * 1 <= Rabs a * Rabs c) by (apply Rmult_le_compat; lra). lra. }
   split.
-  - intro P. rewrite Rabs_pos_eq in AC by lra. assert (bp (-200) * / 1000000 <= 1 * / 1000000) by (apply Rmult_le_compat_r; lra).
+  - intro P. rewrite Rabs_pos_eq in AC by lra. assert (bp (-200) * / 1000000 <= 1 * / 1000000) by (apply
+    Rmult_le_compat_r; lra).
     lra.
   - intros N r s Hs. rewrite Rabs_left in AC by assumption.
     assert (A0 : a <> 0) by (intro Z; rewrite Z, Rmult_0_l in N; lra).
@@ -321,16 +328,19 @@ Proof.
         assumption. }
     assert (S1 : 1 <= sqrt m) by (apply below_root; [apply sqrt_pos | rewrite sqrt_sqrt; lra]).
     pose proof (root_near m (m + B * B) ltac:(lra) ltac:(pose proof (sq_pos B); lra)) as Q.
-    replace (m - (m + B * B)) with (- (B * B)) in Q by ring. rewrite Rabs_Ropp, (Rabs_pos_eq (B * B)) in Q by apply sq_pos.
+    replace (m - (m + B * B)) with (- (B * B)) in Q by ring. rewrite Rabs_Ropp, (Rabs_pos_eq (B * B)) in Q by apply
+      sq_pos.
     set (w := sqrt (m + B * B)) in *. set (v := sqrt m) in *.
     assert (Q2 : Rabs (v - w) <= bp (-200) * / 1000000).
-    { pose proof (Rabs_pos (v - w)). assert (Rabs (v - w) * 1 <= Rabs (v - w) * v) by (apply Rmult_le_compat_l; lra). lra. }
+    { pose proof (Rabs_pos (v - w)). assert (Rabs (v - w) * 1 <= Rabs (v - w) * v) by (apply Rmult_le_compat_l; lra).
+      lra. }
     rewrite R. replace ((- B + s * w) / (2 * Rabs a) - s * (v / (2 * Rabs a))) with ((- B - s * (v - w)) / (2 * Rabs a))
       by (field; lra).
     apply Rabs_div_le; [lra|]. rewrite (Rabs_pos_eq (2 * Rabs a)) by lra.
     replace (bp (-199) * (v / (2 * Rabs a)) * (2 * Rabs a)) with (bp (-199) * v) by (field; lra).
     assert (H1 : Rabs (s * (v - w)) <= bp (-200) * / 1000000).
-    { rewrite Rabs_mult. replace (Rabs s) with 1; [lra|]. destruct Hs as [Hs|Hs]; rewrite Hs; unfold Rabs; destruct Rcase_abs; lra. }
+    { rewrite Rabs_mult. replace (Rabs s) with 1; [lra|]. destruct Hs as [Hs|Hs]; rewrite Hs; unfold Rabs; destruct
+      Rcase_abs; lra. }
     assert (H2 : Rabs (- B - s * (v - w)) <= bp (-200) + bp (-200) * / 1000000).
     { apply Rabs_minus_le; [rewrite Rabs_Ropp; lra | exact H1]. }
     assert (bp (-199) * 1 <= bp (-199) * v) by (apply Rmult_le_compat_l; lra). lra.
@@ -355,7 +365,8 @@ Proof.
   { pose proof (root_near 1 (1 - 4 * e) ltac:(lra) ltac:(lra)) as Q. rewrite sqrt_1 in Q. fold v in Q.
     rewrite Rmult_1_r in Q. eapply Rle_trans; [exact Q|]. apply Rabs_le. lra. }
   assert (W : w = - b * (1 + v)).
-  { unfold w. rewrite D, sqrt_mult_alt by lra. fold v. replace (sqrt (b * b)) with (Rabs b) by (symmetry; apply sqrt_Rsqr_abs).
+  { unfold w. rewrite D, sqrt_mult_alt by lra. fold v. replace (sqrt (b * b)) with (Rabs b) by (symmetry; apply
+    sqrt_Rsqr_abs).
     rewrite <- Rmult_assoc, S. ring. }
   assert (T : 4 * bp (-400) <= bp (-110) * / 2).
   { assert (bp (-390) <= bp (-112)) by (apply bp_le; lia).
@@ -369,7 +380,8 @@ Proof.
   - apply rounds_alike; auto using F_opp. set (q := - c / b).
     replace (2 * c / w - q) with ((1 - v) / (1 + v) * q) by (rewrite W; unfold q; field; split; lra).
     rewrite Rabs_mult. apply Rmult_le_compat_r; [apply Rabs_pos|]. apply Rabs_div_le; [lra|].
-    rewrite (Rabs_pos_eq (1 + v)) by lra. assert (bp (-110) * 1 <= bp (-110) * (1 + v)) by (apply Rmult_le_compat_l; lra). lra.
+    rewrite (Rabs_pos_eq (1 + v)) by lra. assert (bp (-110) * 1 <= bp (-110) * (1 + v)) by (apply Rmult_le_compat_l;
+      lra). lra.
 Qed.
 (* The three cases together. *)
 Theorem LOPSIDED_holds : forall a b c j, F a -> F b -> F c -> / 2 <= Rabs a < 2 -> b = 0 \/ 1 <= Rabs b < 2 ->

@@ -10,10 +10,12 @@ Definition ROUNDINGS := 10 * u.
 (* The normal is one up to that part of it. *)
 Definition LARGEST_NORMAL_ERROR := bp (-8).
 
-(* One weight: the exact x with P.N = x N.N for vectors P = x N; the product q and the normal n as computed, the dot product and the square. *)
+(* One weight: the exact x with P.N = x N.N for vectors P = x N; the product q and the normal n as computed, the dot
+  product and the square. *)
 Section Weight.
 Variables x N1 N2 N3 n1 n2 n3 q1 q2 q3 part nu L dot square tiny : R.
-Hypotheses (Hx : Rabs x <= 1) (Hn : len (n1 - N1) (n2 - N2) (n3 - N3) <= nu) (Hq : len (q1 - x * N1) (q2 - x * N2) (q3 - x * N3) <= part)
+Hypotheses (Hx : Rabs x <= 1) (Hn : len (n1 - N1) (n2 - N2) (n3 - N3) <= nu) (Hq : len (q1 - x * N1) (q2 - x * N2) (q3
+  - x * N3) <= part)
   (HL : L = len n1 n2 n3) (L0 : 0 < L) (Hnu : nu <= LARGEST_NORMAL_ERROR * L)
   (Hdot : Rabs (dot - (q1 * n1 + q2 * n2 + q3 * n3)) <= (3 + / 100) * u * (len q1 q2 q3 * L) + tiny * (L * L))
   (Hsquare : Rabs (square - L * L) <= (3 + / 100) * u * (L * L)) (Htiny : 0 <= tiny <= / 1000 * u).
@@ -21,47 +23,64 @@ Let weight := RN (dot / square).
 
 Lemma weight_near : Rabs (weight - x) <= (1 + / 100) * ((part + nu) / L) + (72 / 10) * u /\ 0 <= (part + nu) / L.
 Proof.
-  pose proof u_pos as up. assert (B8 : LARGEST_NORMAL_ERROR = / 256) by (unfold LARGEST_NORMAL_ERROR; simpl; lra). rewrite B8 in Hnu.
+  pose proof u_pos as up. assert (B8 : LARGEST_NORMAL_ERROR = / 256) by (unfold LARGEST_NORMAL_ERROR; simpl; lra).
+    rewrite B8 in Hnu.
   pose proof (len_pos (n1 - N1) (n2 - N2) (n3 - N3)). pose proof (len_pos (q1 - x * N1) (q2 - x * N2) (q3 - x * N3)).
   assert (LL : 0 < L * L) by (apply Rmult_lt_0_compat; assumption). set (S := L * L) in *.
   assert (nn : n1 * n1 + n2 * n2 + n3 * n3 = S) by (unfold S; rewrite HL; now rewrite len_sq).
   (* q.n against x n.n *)
   set (d := q1 * n1 + q2 * n2 + q3 * n3) in *.
   assert (D : Rabs (d - x * S) <= (part + nu) * L).
-  { replace (d - x * S) with (((q1 - x * N1) * n1 + (q2 - x * N2) * n2 + (q3 - x * N3) * n3) - x * ((n1 - N1) * n1 + (n2 - N2) * n2 + (n3 - N3) * n3)) by (rewrite <- nn; unfold d; ring).
+  { replace (d - x * S) with (((q1 - x * N1) * n1 + (q2 - x * N2) * n2 + (q3 - x * N3) * n3) - x * ((n1 - N1) * n1 +
+    (n2 - N2) * n2 + (n3 - N3) * n3)) by (rewrite <- nn; unfold d; ring).
     apply Rle_trans with (part * L + 1 * (nu * L)); [|lra]. apply Rabs_minus_le.
     - eapply Rle_trans; [apply len_dot|]. rewrite <- HL. apply Rmult_le_compat_r; lra.
-    - apply Rabs_mult_le; [exact Hx|]. eapply Rle_trans; [apply len_dot|]. rewrite <- HL. apply Rmult_le_compat_r; lra. }
+    - apply Rabs_mult_le; [exact Hx|]. eapply Rle_trans; [apply len_dot|]. rewrite <- HL. apply Rmult_le_compat_r;
+      lra. }
   assert (QL : len q1 q2 q3 * L <= (1 + / 200) * S + part * L).
-  { pose proof (len_sub q1 q2 q3 (x * N1) (x * N2) (x * N3)) as T. pose proof (len_sub N1 N2 N3 n1 n2 n3) as T2. rewrite <- HL in T2.
-    assert (E : len (N1 - n1) (N2 - n2) (N3 - n3) = len (n1 - N1) (n2 - N2) (n3 - N3)) by (unfold len; f_equal; ring). rewrite E in T2.
+  { pose proof (len_sub q1 q2 q3 (x * N1) (x * N2) (x * N3)) as T. pose proof (len_sub N1 N2 N3 n1 n2 n3) as T2.
+    rewrite <- HL in T2.
+    assert (E : len (N1 - n1) (N2 - n2) (N3 - n3) = len (n1 - N1) (n2 - N2) (n3 - N3)) by (unfold len; f_equal; ring).
+      rewrite E in T2.
     assert (XN : len (x * N1) (x * N2) (x * N3) <= (1 + / 200) * L).
-    { apply Rle_trans with (1 * len N1 N2 N3); [|lra]. apply len_part; try lra; rewrite Rabs_mult; apply Rmult_le_compat_r; try apply Rabs_pos; assumption. }
+    { apply Rle_trans with (1 * len N1 N2 N3); [|lra]. apply len_part; try lra; rewrite Rabs_mult; apply
+      Rmult_le_compat_r; try apply Rabs_pos; assumption. }
     apply Rle_trans with (((1 + / 200) * L + part) * L); [apply Rmult_le_compat_r; lra | unfold S; lra]. }
   set (pe := (part + nu) / L). assert (pl : pe * S = (part + nu) * L) by (unfold pe, S; field; lra).
-  assert (pe0 : 0 <= pe) by (unfold pe; apply Rmult_le_pos; [lra | apply Rlt_le, Rinv_0_lt_compat; assumption]). assert (pS : part * L <= pe * S) by (rewrite pl; apply Rmult_le_compat_r; lra).
-  assert (tS : tiny * S <= / 1000 * u * S) by (apply Rmult_le_compat_r; lra). assert (peS : 0 <= pe * S) by (apply Rmult_le_pos; lra).
+  assert (pe0 : 0 <= pe) by (unfold pe; apply Rmult_le_pos; [lra | apply Rlt_le, Rinv_0_lt_compat; assumption]).
+    assert (pS : part * L <= pe * S) by (rewrite pl; apply Rmult_le_compat_r; lra).
+  assert (tS : tiny * S <= / 1000 * u * S) by (apply Rmult_le_compat_r; lra). assert (peS : 0 <= pe * S) by (apply
+    Rmult_le_pos; lra).
   rewrite <- pl in D. set (ps := pe * S) in *.
   assert (G : Rabs (dot - x * S) <= (1 + 4 * u) * ps + (304 / 100) * u * S).
-  { replace (dot - x * S) with ((dot - d) + (d - x * S)) by ring. eapply Rle_trans; [apply Rabs_plus_le; [exact Hdot | exact D]|].
-    assert ((3 + / 100) * u * (len q1 q2 q3 * L) <= (3 + / 100) * u * ((1 + / 200) * S + part * L)) by (apply Rmult_le_compat_l; lra).
+  { replace (dot - x * S) with ((dot - d) + (d - x * S)) by ring. eapply Rle_trans; [apply Rabs_plus_le; [exact Hdot |
+    exact D]|].
+    assert ((3 + / 100) * u * (len q1 q2 q3 * L) <= (3 + / 100) * u * ((1 + / 200) * S + part * L)) by (apply
+      Rmult_le_compat_l; lra).
     clear - H1 tS pS LL peS. rewrite u_val in *. lra. }
   pose proof Hsquare as Hs. apply Rabs_le_inv in Hs. assert (sq0 : 0 < square) by (rewrite u_val in *; lra).
   assert (Q : Rabs (dot / square - x) <= (1 + 10 * u) * pe + (607 / 100) * u).
   { apply Rmult_le_reg_r with square; [assumption|]. rewrite <- (Rabs_pos_eq square) at 2 by lra. rewrite <- Rabs_mult.
     replace ((dot / square - x) * square) with ((dot - x * S) - x * (square - S)) by (field; lra).
-    apply Rle_trans with ((1 + 4 * u) * ps + (304 / 100) * u * S + 1 * ((3 + / 100) * u * S)); [apply Rabs_minus_le; [exact G | apply Rabs_mult_le; assumption]|].
+    apply Rle_trans with ((1 + 4 * u) * ps + (304 / 100) * u * S + 1 * ((3 + / 100) * u * S)); [apply Rabs_minus_le;
+      [exact G | apply Rabs_mult_le; assumption]|].
     apply Rle_trans with (((1 + 10 * u) * pe + 607 / 100 * u) * ((1 - 4 * u) * S)).
-    - replace (((1 + 10 * u) * pe + 607 / 100 * u) * ((1 - 4 * u) * S)) with ((1 + 10 * u) * (1 - 4 * u) * ps + 607 / 100 * u * (1 - 4 * u) * S) by (unfold ps; ring). clear - peS LL. rewrite u_val. lra.
-    - apply Rmult_le_compat_l; [assert (0 <= 10 * u * pe) by (apply Rmult_le_pos; lra); lra | rewrite u_val in *; lra]. }
+    - replace (((1 + 10 * u) * pe + 607 / 100 * u) * ((1 - 4 * u) * S)) with ((1 + 10 * u) * (1 - 4 * u) * ps + 607 /
+      100 * u * (1 - 4 * u) * S) by (unfold ps; ring). clear - peS LL. rewrite u_val. lra.
+    - apply Rmult_le_compat_l; [assert (0 <= 10 * u * pe) by (apply Rmult_le_pos; lra); lra | rewrite u_val in *;
+      lra]. }
   split; [|exact pe0].
   assert (T : bp (-1075) <= / 1000 * u).
-  { apply Rle_trans with (bp (-10) * u); [unfold u; rewrite <- bp_add; apply bp_le; lia | apply Rmult_le_compat_r; [lra | simpl; lra]]. }
+  { apply Rle_trans with (bp (-10) * u); [unfold u; rewrite <- bp_add; apply bp_le; lia | apply Rmult_le_compat_r;
+    [lra | simpl; lra]]. }
   pose proof (RN_err (dot / square)) as E. fold weight in E.
   assert (A : Rabs (dot / square) <= 1 + ((1 + 10 * u) * pe + (607 / 100) * u)).
-  { replace (dot / square) with ((dot / square - x) + x) by ring. eapply Rle_trans; [apply Rabs_plus_le; [exact Q | exact Hx]|]. lra. }
-  replace (weight - x) with ((weight - dot / square) + (dot / square - x)) by ring. eapply Rle_trans; [apply Rabs_plus_le; [exact E | exact Q]|].
-  assert (u * Rabs (dot / square) <= u * (1 + ((1 + 10 * u) * pe + (607 / 100) * u))) by (apply Rmult_le_compat_l; lra). rewrite u_val in *. lra.
+  { replace (dot / square) with ((dot / square - x) + x) by ring. eapply Rle_trans; [apply Rabs_plus_le; [exact Q |
+    exact Hx]|]. lra. }
+  replace (weight - x) with ((weight - dot / square) + (dot / square - x)) by ring. eapply Rle_trans; [apply
+    Rabs_plus_le; [exact E | exact Q]|].
+  assert (u * Rabs (dot / square) <= u * (1 + ((1 + 10 * u) * pe + (607 / 100) * u))) by (apply Rmult_le_compat_l;
+    lra). rewrite u_val in *. lra.
 Qed.
 (* The bound, with the length of n as computed. *)
 Variables length part' error : R.
@@ -69,37 +88,47 @@ Hypotheses (Hlen : Rabs (length - L) <= 4 * u * L) (Hpart : (1 - 8 * u) * part <
   (Herror : (1 - 16 * u) * (SUM_FACTOR * ((part' + NORMAL_FACTOR * nu) / length) + ROUNDINGS) <= error).
 Theorem SUM_FACTOR_holds : Rabs (weight - x) <= error.
 Proof.
-  destruct weight_near as [W P]. eapply Rle_trans; [exact W|]. eapply Rle_trans; [|exact Herror]. pose proof u_pos as up. unfold SUM_FACTOR, NORMAL_FACTOR, ROUNDINGS.
-  pose proof (len_pos (n1 - N1) (n2 - N2) (n3 - N3)). pose proof (len_pos (q1 - x * N1) (q2 - x * N2) (q3 - x * N3)). apply Rabs_le_inv in Hlen.
+  destruct weight_near as [W P]. eapply Rle_trans; [exact W|]. eapply Rle_trans; [|exact Herror]. pose proof u_pos as
+    up. unfold SUM_FACTOR, NORMAL_FACTOR, ROUNDINGS.
+  pose proof (len_pos (n1 - N1) (n2 - N2) (n3 - N3)). pose proof (len_pos (q1 - x * N1) (q2 - x * N2) (q3 - x * N3)).
+    apply Rabs_le_inv in Hlen.
   assert (l0 : 0 < length) by (rewrite u_val in *; lra).
   assert (K : (1 - 20 * u) * ((part + nu) / L) <= (part' + 31 / 10 * nu) / length).
   { apply Rmult_le_reg_r with (L * length); [apply Rmult_lt_0_compat; assumption|].
-    replace ((1 - 20 * u) * ((part + nu) / L) * (L * length)) with ((1 - 20 * u) * (part + nu) * length) by (field; lra).
+    replace ((1 - 20 * u) * ((part + nu) / L) * (L * length)) with ((1 - 20 * u) * (part + nu) * length) by (field;
+      lra).
     replace ((part' + 31 / 10 * nu) / length * (L * length)) with ((part' + 31 / 10 * nu) * L) by (field; lra).
     apply Rle_trans with ((1 - 20 * u) * (part + nu) * ((1 + 4 * u) * L)).
     - apply Rmult_le_compat_l; [apply Rmult_le_pos; [rewrite u_val; lra | lra] | lra].
-    - replace ((1 - 20 * u) * (part + nu) * ((1 + 4 * u) * L)) with ((1 - 20 * u) * (1 + 4 * u) * (part + nu) * L) by ring. apply Rmult_le_compat_r; [lra|]. rewrite u_val in *. lra. }
-  set (y := (part + nu) / L) in *. set (z := (part' + 31 / 10 * nu) / length) in *. clear - K P. rewrite u_val in *. lra.
+    - replace ((1 - 20 * u) * (part + nu) * ((1 + 4 * u) * L)) with ((1 - 20 * u) * (1 + 4 * u) * (part + nu) * L) by
+      ring. apply Rmult_le_compat_r; [lra|]. rewrite u_val in *. lra. }
+  set (y := (part + nu) / L) in *. set (z := (part' + 31 / 10 * nu) / length) in *. clear - K P. rewrite u_val in *.
+    lra.
 Qed.
 Theorem ROUNDINGS_holds : part = 0 -> nu = 0 -> Rabs (weight - x) <= (1 - 16 * u) * ROUNDINGS.
 Proof.
-  intros P Z. destruct weight_near as [W _]. rewrite P, Z in W. replace ((0 + 0) / L) with 0 in W by (field; lra). unfold ROUNDINGS. pose proof u_pos. rewrite u_val in *. lra.
+  intros P Z. destruct weight_near as [W _]. rewrite P, Z in W. replace ((0 + 0) / L) with 0 in W by (field; lra).
+    unfold ROUNDINGS. pose proof u_pos. rewrite u_val in *. lra.
 Qed.
 Theorem NORMAL_FACTOR_holds : (1 + / 100) * ((part + nu) / L) <= SUM_FACTOR * ((part + NORMAL_FACTOR * nu) / L).
 Proof.
-  pose proof (len_pos (n1 - N1) (n2 - N2) (n3 - N3)). pose proof (len_pos (q1 - x * N1) (q2 - x * N2) (q3 - x * N3)). unfold SUM_FACTOR, NORMAL_FACTOR.
+  pose proof (len_pos (n1 - N1) (n2 - N2) (n3 - N3)). pose proof (len_pos (q1 - x * N1) (q2 - x * N2) (q3 - x * N3)).
+    unfold SUM_FACTOR, NORMAL_FACTOR.
   apply Rle_trans with (105 / 100 * ((part + nu) / L)).
   - apply Rmult_le_compat_r; [|lra]. apply Rmult_le_pos; [lra | apply Rlt_le, Rinv_0_lt_compat; assumption].
   - apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_r; [apply Rlt_le, Rinv_0_lt_compat; assumption | lra].
 Qed.
 Theorem LARGEST_NORMAL_ERROR_holds : len N1 N2 N3 <= (1 + / 256) * L.
 Proof.
-  pose proof (len_sub N1 N2 N3 n1 n2 n3) as T2. rewrite <- HL in T2. assert (E : len (N1 - n1) (N2 - n2) (N3 - n3) = len (n1 - N1) (n2 - N2) (n3 - N3)) by (unfold len; f_equal; ring).
-  rewrite E in T2. assert (B8 : LARGEST_NORMAL_ERROR = / 256) by (unfold LARGEST_NORMAL_ERROR; simpl; lra). rewrite B8 in Hnu. lra.
+  pose proof (len_sub N1 N2 N3 n1 n2 n3) as T2. rewrite <- HL in T2. assert (E : len (N1 - n1) (N2 - n2) (N3 - n3) =
+    len (n1 - N1) (n2 - N2) (n3 - N3)) by (unfold len; f_equal; ring).
+  rewrite E in T2. assert (B8 : LARGEST_NORMAL_ERROR = / 256) by (unfold LARGEST_NORMAL_ERROR; simpl; lra). rewrite B8
+    in Hnu. lra.
 Qed.
 End Weight.
 
-(* The product of the vector p from the first vertex to the point with an edge f, of components at most M with sum E: three roundings of terms of
+(* The product of the vector p from the first vertex to the point with an edge f, of components at most M with sum E:
+  three roundings of terms of
    together norm(p) E at most, and the error of p, that of the point and u of itself. *)
 Section Part.
 Variables p1 p2 p3 P1 P2 P3 a1 a2 a3 b1 b2 b3 E eps part : R.
@@ -109,9 +138,11 @@ Hypotheses (HE : norm1 f1 f2 f3 <= E) (Bp1 : Rabs p1 <= bp 410) (Bp2 : Rabs p2 <
   (Hp : len (p1 - P1) (p2 - P2) (p3 - P3) <= eps + (1 + / 1000) * u * norm1 p1 p2 p3) (e0 : 0 <= eps).
 Definition tpart x2 x3 y2 z2 y3 z3 := tminor (X x2 410) (D z3 y3 301) (X x3 410) (D z2 y2 301).
 Variables q1 q2 q3 tiny : R.
-Hypotheses (H1 : plain (tpart p2 p3 a2 b2 a3 b3) q1) (H2 : plain (tpart p3 p1 a3 b3 a1 b1) q2) (H3 : plain (tpart p1 p2 a1 b1 a2 b2) q3)
+Hypotheses (H1 : plain (tpart p2 p3 a2 b2 a3 b3) q1) (H2 : plain (tpart p3 p1 a3 b3 a1 b1) q2) (H3 : plain (tpart p1
+  p2 a1 b1 a2 b2) q3)
   (Htiny : 3 * bp (-300) <= tiny).
-Theorem PART_FACTOR_holds : (1 - 16 * u) * (E * (PART_FACTOR * (eps + 102 / 100 * u * norm1 p1 p2 p3) + 61 / 10 * u * norm1 p1 p2 p3)) + tiny <= part ->
+Theorem PART_FACTOR_holds : (1 - 16 * u) * (E * (PART_FACTOR * (eps + 102 / 100 * u * norm1 p1 p2 p3) + 61 / 10 * u *
+  norm1 p1 p2 p3)) + tiny <= part ->
   len (q1 - (P2 * f3 - P3 * f2)) (q2 - (P3 * f1 - P1 * f3)) (q3 - (P1 * f2 - P2 * f1)) <= part.
 Proof.
   intro Hb. pose proof u_pos as up.
@@ -124,30 +155,44 @@ Proof.
   assert (T1 : bp (low (tpart p2 p3 a2 b2 a3 b3)) <= bp (-300)) by (apply bp_le; vm_compute; discriminate).
   assert (T2 : bp (low (tpart p3 p1 a3 b3 a1 b1)) <= bp (-300)) by (apply bp_le; vm_compute; discriminate).
   assert (T3 : bp (low (tpart p1 p2 a1 b1 a2 b2)) <= bp (-300)) by (apply bp_le; vm_compute; discriminate).
-  set (w1 := bp (low (tpart p2 p3 a2 b2 a3 b3))) in *. set (w2 := bp (low (tpart p3 p1 a3 b3 a1 b1))) in *. set (w3 := bp (low (tpart p1 p2 a1 b1 a2 b2))) in *. clearbody w1 w2 w3.
+  set (w1 := bp (low (tpart p2 p3 a2 b2 a3 b3))) in *. set (w2 := bp (low (tpart p3 p1 a3 b3 a1 b1))) in *. set (w3 :=
+    bp (low (tpart p1 p2 a1 b1 a2 b2))) in *. clearbody w1 w2 w3.
   unfold tpart, tminor in Q1, Q2, Q3. cbn [exact size] in Q1, Q2, Q3. fold f1 f2 f3 in Q1, Q2, Q3.
   (* what p is off by *)
-  set (np := norm1 p1 p2 p3) in *. assert (np0 : 0 <= np) by apply norm1_pos. set (le := len (p1 - P1) (p2 - P2) (p3 - P3)) in *.
-  assert (C : len ((p2 - P2) * f3 - (p3 - P3) * f2) ((p3 - P3) * f1 - (p1 - P1) * f3) ((p1 - P1) * f2 - (p2 - P2) * f1) <= le * E).
+  set (np := norm1 p1 p2 p3) in *. assert (np0 : 0 <= np) by apply norm1_pos. set (le := len (p1 - P1) (p2 - P2) (p3 -
+    P3)) in *.
+  assert (C : len ((p2 - P2) * f3 - (p3 - P3) * f2) ((p3 - P3) * f1 - (p1 - P1) * f3) ((p1 - P1) * f2 - (p2 - P2) *
+    f1) <= le * E).
   { assert (E0 : 0 <= E) by (pose proof (norm1_pos f1 f2 f3); lra). assert (le0 : 0 <= le) by apply len_pos.
-    apply Rle_trans with (le * len f1 f2 f3); [|apply Rmult_le_compat_l; [assumption | eapply Rle_trans; [apply len_le_norm1 | exact HE]]].
+    apply Rle_trans with (le * len f1 f2 f3); [|apply Rmult_le_compat_l; [assumption | eapply Rle_trans; [apply
+      len_le_norm1 | exact HE]]].
     apply below_root; [apply Rmult_le_pos; [assumption | apply len_pos]|]. rewrite len_sq.
-    replace (le * len f1 f2 f3 * (le * len f1 f2 f3)) with ((le * le) * (len f1 f2 f3 * len f1 f2 f3)) by ring. unfold le. rewrite !len_sq.
-    pose proof (lagrange (p1 - P1) (p2 - P2) (p3 - P3) f1 f2 f3) as G. pose proof (sq_pos ((p1 - P1) * f1 + (p2 - P2) * f2 + (p3 - P3) * f3)). lra. }
-  assert (S : Rabs p2 * Rabs f3 + Rabs p3 * Rabs f2 + (Rabs p3 * Rabs f1 + Rabs p1 * Rabs f3) + (Rabs p1 * Rabs f2 + Rabs p2 * Rabs f1) <= np * E).
-  { apply Rle_trans with (np * norm1 f1 f2 f3); [|apply Rmult_le_compat_l; assumption]. unfold np, norm1. pose proof (Rabs_pos p1). pose proof (Rabs_pos p2). pose proof (Rabs_pos p3).
+    replace (le * len f1 f2 f3 * (le * len f1 f2 f3)) with ((le * le) * (len f1 f2 f3 * len f1 f2 f3)) by ring. unfold
+      le. rewrite !len_sq.
+    pose proof (lagrange (p1 - P1) (p2 - P2) (p3 - P3) f1 f2 f3) as G. pose proof (sq_pos ((p1 - P1) * f1 + (p2 - P2)
+      * f2 + (p3 - P3) * f3)). lra. }
+  assert (S : Rabs p2 * Rabs f3 + Rabs p3 * Rabs f2 + (Rabs p3 * Rabs f1 + Rabs p1 * Rabs f3) + (Rabs p1 * Rabs f2 +
+    Rabs p2 * Rabs f1) <= np * E).
+  { apply Rle_trans with (np * norm1 f1 f2 f3); [|apply Rmult_le_compat_l; assumption]. unfold np, norm1. pose proof
+    (Rabs_pos p1). pose proof (Rabs_pos p2). pose proof (Rabs_pos p3).
     pose proof (Rabs_pos f1). pose proof (Rabs_pos f2). pose proof (Rabs_pos f3).
-    pose proof (Rmult_le_pos (Rabs p1) (Rabs f1)). pose proof (Rmult_le_pos (Rabs p2) (Rabs f2)). pose proof (Rmult_le_pos (Rabs p3) (Rabs f3)). lra. }
+    pose proof (Rmult_le_pos (Rabs p1) (Rabs f1)). pose proof (Rmult_le_pos (Rabs p2) (Rabs f2)). pose proof
+      (Rmult_le_pos (Rabs p3) (Rabs f3)). lra. }
   eapply Rle_trans; [|exact Hb].
   replace (len (q1 - (P2 * f3 - P3 * f2)) (q2 - (P3 * f1 - P1 * f3)) (q3 - (P1 * f2 - P2 * f1))) with
-    (len ((q1 - (p2 * f3 - p3 * f2)) + ((p2 - P2) * f3 - (p3 - P3) * f2)) ((q2 - (p3 * f1 - p1 * f3)) + ((p3 - P3) * f1 - (p1 - P1) * f3))
+    (len ((q1 - (p2 * f3 - p3 * f2)) + ((p2 - P2) * f3 - (p3 - P3) * f2)) ((q2 - (p3 * f1 - p1 * f3)) + ((p3 - P3) *
+      f1 - (p1 - P1) * f3))
       ((q3 - (p1 * f2 - p2 * f1)) + ((p1 - P1) * f2 - (p2 - P2) * f1))) by (f_equal; ring).
-  eapply Rle_trans; [apply len_add|]. eapply Rle_trans; [apply Rplus_le_compat; [apply len_le_norm1 | exact C]|]. unfold norm1 at 1.
+  eapply Rle_trans; [apply len_add|]. eapply Rle_trans; [apply Rplus_le_compat; [apply len_le_norm1 | exact C]|].
+    unfold norm1 at 1.
   assert (E0 : 0 <= E) by (pose proof (norm1_pos f1 f2 f3); lra).
   assert (LE : le * E <= (eps + (1 + / 1000) * u * np) * E) by (apply Rmult_le_compat_r; assumption).
-  assert (0 <= np * E) by (apply Rmult_le_pos; assumption). assert (0 <= eps * E) by (apply Rmult_le_pos; assumption). unfold PART_FACTOR.
-  replace (E * (101 / 100 * (eps + 102 / 100 * u * np) + 61 / 10 * u * np)) with (101 / 100 * (eps * E) + (101 / 100 * (102 / 100) + 61 / 10) * u * (np * E)) by ring.
+  assert (0 <= np * E) by (apply Rmult_le_pos; assumption). assert (0 <= eps * E) by (apply Rmult_le_pos; assumption).
+    unfold PART_FACTOR.
+  replace (E * (101 / 100 * (eps + 102 / 100 * u * np) + 61 / 10 * u * np)) with (101 / 100 * (eps * E) + (101 / 100 *
+    (102 / 100) + 61 / 10) * u * (np * E)) by ring.
   replace ((eps + (1 + / 1000) * u * np) * E) with (eps * E + (1 + / 1000) * u * (np * E)) in LE by ring.
-  set (ne := np * E) in *. set (ee := eps * E) in *. set (l2 := le * E) in *. clear - Q1 Q2 Q3 T1 T2 T3 S LE Htiny H H0. rewrite u_val in *. lra.
+  set (ne := np * E) in *. set (ee := eps * E) in *. set (l2 := le * E) in *. clear - Q1 Q2 Q3 T1 T2 T3 S LE Htiny H
+    H0. rewrite u_val in *. lra.
 Qed.
 End Part.
