@@ -101,6 +101,7 @@ const FILES: &[File] = &[
         &[("LEAST_PRODUCT", "rt-math/src/exact/error_free.rs", "`a b` is zero or at least ", " in magnitude")],
     ),
     ("Frame", &[("COORDINATE_ERROR", "rt-geom/src/bvh/node.rs", "pub(super) const COORDINATE_ERROR: f64 = ", ";")]),
+    ("Kept", &[]),
     (
         "Fixed",
         &[

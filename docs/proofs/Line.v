@@ -534,7 +534,7 @@ End Range.
 
 (* Where the origin is so near that the error is below the limit: what the tests of boxes and balls take for granted. *)
 Lemma nearest_range : error < MAX_LINE_ERROR -> norm q1' q2' q3' <= 1 ->
-  norm q1 q2 q3 <= 1 + / 100 + / 16 /\
+  norm q1 q2 q3 <= 1 + / 100 /\
   forall s, plain (tdot (X q1 1) (X q2 1) (X q3 1) (X q1 1) (X q2 1) (X q3 1)) s ->
   s <= RN (RN (1 + error) * RN (1 + error)).
 Proof.
