@@ -267,6 +267,7 @@ const FILES: &[File] = &[
             ("LEAST_WEIGHT", "rt-geom/src/triangle/filter.rs", "|&weight| weight >= ", ")"),
         ],
     ),
+    ("ReachScalar", &[]),
     ("Reflect", &[("ERROR", "rt-math/src/reflect.rs", "const ERROR: f64 = ", ";")]),
     (
         "ReflectRange",
