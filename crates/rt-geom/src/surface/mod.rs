@@ -621,4 +621,38 @@ mod tests {
         }
         assert!(known > cases(LONG) / 50 && sharpest > 0.02, "{known} {sharpest}");
     }
+
+    #[test]
+    fn double_double_knows_a_hit_up_to_the_ends_of_its_range() {
+        let power = |k: i32| 2f64.powi(k);
+        let is_known = |center: DVec3, radius: f64, way: f64| {
+            let (sphere, ray) = (Sphere::new(center, radius).unwrap(), Ray::new(DVec3::ZERO, way * DVec3::Z).unwrap());
+            let hit = sphere.hit_point(&ray, sphere.closest(&ray, 0.0..f64::INFINITY).expect("ahead"));
+            (finish::from(&hit, center).is_some(), finish::root(&hit, &sphere))
+        };
+        for (k, known) in [(299, true), (302, false)] {
+            let root = known.then_some(Root::Near);
+            assert_eq!(is_known(power(k) * DVec3::Z, power(k - 4), 1.0), (known, root), "center {k}");
+            assert_eq!(is_known(power(k - 89) * DVec3::Z, power(k - 93), power(-89)), (known, root), "t {k}");
+            assert_eq!(is_known(DVec3::ZERO, power(k), 1.0), (known, known.then_some(Root::Far)), "radius {k}");
+        }
+        for (k, known) in [(-149, true), (-152, false)] {
+            let near = is_known(power(k + 2) * DVec3::Z, power(k), 1.0);
+            assert_eq!(near, (known, known.then_some(Root::Near)), "radius {k}");
+        }
+        // The point from which the hit is seen.
+        let (sphere, ray) = (Sphere::new(DVec3::Z, 0.5).unwrap(), Ray::new(DVec3::ZERO, DVec3::Z).unwrap());
+        let hit = sphere.hit_point(&ray, 0.5);
+        let seen = |k: i32| finish::from(&hit, power(k) * DVec3::X).is_some();
+        assert_eq!([299, 302].map(seen), [true, false]);
+        // A triangle, of which the first vertex and the edges count.
+        let triangle_is_known = |k: i32| {
+            let size = power(k);
+            let [a, b, c] = [[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]].map(|[x, y]| size * DVec3::new(x, y, 1.0));
+            let triangle = Triangle::new(a, b, c).unwrap();
+            let t = triangle.closest(&ray, 0.0..f64::INFINITY).expect("ahead");
+            finish::from(&triangle.hit_point(&ray, t), DVec3::ZERO).is_some()
+        };
+        assert_eq!([295, 302].map(triangle_is_known), [true, false]);
+    }
 }
