@@ -646,6 +646,22 @@ mod tests {
     }
 
     #[test]
+    fn a_double_root_that_is_subnormal_is_rounded_once() {
+        let mut subnormal = 0;
+        check_class(42, |rng| {
+            // (p x + q)^2, of which no coefficient is rounded
+            let p = f64::from(2 * rng.integer(1 << 8..1 << 9) + 1) * 2f64.powi(rng.integer(499..502));
+            let q = f64::from(rng.integer(1..1 << 22)) * 2f64.powi(rng.integer(-537..-535));
+            let equation = [p * p, 2.0 * p * q, q * q];
+            if let Roots::One(x) = solve_quadratic(equation[0], equation[1], equation[2]) {
+                subnormal += usize::from(x.is_subnormal());
+            }
+            equation
+        });
+        assert!(subnormal > 5_000, "{subnormal}");
+    }
+
+    #[test]
     fn subnormal_coefficients_are_solved() {
         check_class(27, |rng| {
             let mut pick = || {

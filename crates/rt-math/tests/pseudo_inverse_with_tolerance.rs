@@ -158,6 +158,23 @@ fn without_anything_to_drop_the_answer_is_the_exact_one() {
 }
 
 #[test]
+fn a_matrix_of_exact_rank_two_has_the_exact_answer() {
+    let mut random = Random::new(9);
+    for _ in 0..cases(LONG) / 10 {
+        // Of 30 bits each, so that the sum is exact.
+        let mut column = || (2f64.powi(30) * random.point()).round();
+        let (a, b) = (column(), column());
+        let m = [DMat3::from_cols(a, b, a + b), DMat3::from_cols(a, a + b, b).transpose()][random.below(2)];
+        let m = m * random.power(-80..80);
+        let exact = pseudo_inverse(m);
+        assert_eq!(exact.rank, 2, "{m}");
+        for rtol in [1e-200, 1e-12, 1e-9] {
+            assert_eq!(bits(&pseudo_inverse_with_tolerance(m, rtol)), bits(&exact), "{rtol:e} {m}");
+        }
+    }
+}
+
+#[test]
 fn answer_is_the_pseudo_inverse_of_a_matrix_within_the_tolerance() {
     for (name, class) in CLASSES {
         let mut random = Random::new(4);
