@@ -149,7 +149,7 @@ impl Bvh {
 
     /// Writes the closest hit of each ray, bit for bit what [`closest`](Self::closest) returns.
     ///
-    /// Rays on their way at once wait for memory together: 1.1 to 1.4 times the rays a second of single ones. Rays from one
+    /// Rays on their way at once wait for memory together: up to 1.5 times the rays a second of single ones. Rays from one
     /// point through neighbouring pixels walk the tree together, two to five times as many a second: in one slice the rays
     /// of a picture's rows, eight rows and more best, or of its tiles one after the other.
     ///

@@ -72,8 +72,9 @@ pub(super) struct Tile {
     along: [[Lanes; 3]; GROUPS],
     inverse: [[Lanes; 3]; GROUPS],
     end: [Lanes; GROUPS],
-    /// The greatest of these.
+    /// The greatest of these, and what none exceeds: `D` of the numerics.
     last: f32,
+    farthest: f32,
     slack: f32,
     /// The cull of boxes for all rays at once.
     near: [Slab; 3],
@@ -115,6 +116,7 @@ impl Tile {
             inverse: [[zero; 3]; GROUPS],
             end: [zero; GROUPS],
             last: 0.0,
+            farthest: 0.0,
             slack: 0.0,
             near: [slab; 3],
             far: [slab; 3],
@@ -160,8 +162,8 @@ impl Tile {
         }
         self.origin = origin.as_vec3();
         self.error = reach * LINE_ERROR;
-        let reach = up(reach);
-        self.slack = SLACK * reach + up(self.error);
+        self.farthest = up(reach);
+        self.slack = SLACK * self.farthest + up(self.error);
         self.low[..lanes].fill(f64::INFINITY);
         self.high[..lanes].fill(f64::INFINITY);
         self.place[..lanes].fill(Closest::NOWHERE);
@@ -181,7 +183,7 @@ impl Tile {
         }
         for axis in 0..3 {
             let (least, greatest) = (least[axis], greatest[axis]);
-            if greatest - least > SPREAD.min(self.widest / reach) {
+            if greatest - least > SPREAD.min(self.widest / self.farthest) {
                 return false;
             }
             let inverse = |x: f32| 1.0 / x.abs().max(1.0 / MAX_INVERSE);
@@ -202,10 +204,10 @@ impl Tile {
             self.invert(simd);
         }
         if self.has_balls {
-            self.surround(simd, reach, Vec3::from(least) + Vec3::from(greatest));
+            self.surround(simd, Vec3::from(least) + Vec3::from(greatest));
         }
         for group in 0..self.groups() {
-            self.shorten(simd, group, end, reach);
+            self.shorten(simd, group, end);
         }
         self.find_last(simd);
         true
@@ -249,7 +251,7 @@ impl Tile {
 
     /// Finds the planes around the rays.
     #[inline(always)]
-    fn surround<S: Simd>(&mut self, simd: S, reach: f32, middle: Vec3) {
+    fn surround<S: Simd>(&mut self, simd: S, middle: Vec3) {
         let direction = |lane: usize| {
             let along = &self.along[lane / WIDTH];
             Vec3::new(along[0].0[lane % WIDTH], along[1].0[lane % WIDTH], along[2].0[lane % WIDTH])
@@ -270,14 +272,16 @@ impl Tile {
         }
         let sides =
             [right - greatest[0] * axis, least[0] * axis - right, top - greatest[1] * axis, least[1] * axis - top];
-        // However the planes were found: how far rays may be outside.
+        // However the planes were found: how far rays may be outside. A normal of zero, where rays differ by rounding
+        // alone, bounds nothing; one that is NaN would bound everything.
+        let groups = self.groups();
         for (plane, side) in self.planes.iter_mut().zip(sides) {
-            let normal = side.normalize();
+            let normal = side.normalize_or_zero();
             let mut outside = f32x16::splat(simd, 0.0);
-            for along in &self.along[..self.count.div_ceil(WIDTH)] {
+            for along in &self.along[..groups] {
                 outside = outside.max(dot(simd, along, normal));
             }
-            let offset = normal.dot(self.origin) + (self.slack + 2.0 * reach * outside.reduce_max());
+            let offset = normal.dot(self.origin) + (self.slack + 2.0 * self.farthest * outside.reduce_max());
             *plane = Plane { normal, offset };
         }
         self.planes[4] = Plane { normal: -axis, offset: self.slack - axis.dot(self.origin) };
@@ -285,11 +289,11 @@ impl Tile {
 
     /// What the rays of a group meet beyond `limit` is of no interest any more, nor beyond their best hits.
     #[inline(always)]
-    fn shorten<S: Simd>(&mut self, simd: S, group: usize, limit: f64, reach: f32) {
+    fn shorten<S: Simd>(&mut self, simd: S, group: usize, limit: f64) {
         let at = WIDTH * group;
         let end = self.ends(simd, at, limit).narrow(self.ends(simd, at + EIGHT, limit));
         // The rounding to f32.
-        let end = end.mul_add(f32x16::splat(simd, 4.0 * U), end).min(f32x16::splat(simd, reach));
+        let end = end.mul_add(f32x16::splat(simd, 4.0 * U), end).min(f32x16::splat(simd, self.farthest));
         end.store_slice(&mut self.end[group].0);
     }
 
@@ -543,10 +547,9 @@ fn block<S: Simd, B: TileBlock>(
         }
     }
     if changed != 0 {
-        let reach = up(tile.error / LINE_ERROR);
         for group in 0..tile.groups() {
             if changed >> (WIDTH * group) & 0xffff != 0 {
-                tile.shorten(simd, group, within.end, reach);
+                tile.shorten(simd, group, within.end);
             }
         }
         tile.find_last(simd);
@@ -632,6 +635,7 @@ mod tests {
     use fearless_simd::Level;
     use oracle::Random;
 
+    use super::super::node::Ball;
     use super::*;
     use crate::simd::dispatch;
     use crate::{AHEAD, Sphere, Triangle};
@@ -646,7 +650,7 @@ mod tests {
         }
         tile.high[..ends.len()].copy_from_slice(ends);
         for group in 0..tile.groups() {
-            tile.shorten(simd, group, f64::INFINITY, up(tile.error / LINE_ERROR));
+            tile.shorten(simd, group, f64::INFINITY);
         }
         tile.find_last(simd);
         let met = block.meet_tile(simd, &tile);
@@ -720,5 +724,32 @@ mod tests {
         }
         assert!(hits[0] > 10_000 && hits[1] > 10_000, "{hits:?}");
         assert!(kept[0] < 4 * hits[0] && kept[1] < 10 * hits[1], "{kept:?} for {hits:?}");
+    }
+
+    #[inline(always)]
+    fn around<S: Simd>(simd: S, depths: [f32; 2], block: &Balls) -> ([Plane; 5], u32) {
+        let mut tile = Tile::new(1, 0);
+        (tile.count, tile.farthest, tile.last) = (16, 4.0, 4.0);
+        for (lane, z) in tile.along[0][2].0.iter_mut().enumerate() {
+            *z = depths[usize::from(lane != 0)];
+        }
+        tile.surround(simd, Vec3::new(0.0, 0.0, depths[0] + depths[1]));
+        (tile.planes, block.meet_tile(simd, &tile))
+    }
+
+    /// Unit vectors in f32 may differ by a rounding along themselves: then there is no direction across them. Planes are
+    /// numbers all the same: whether a maximum with NaN is one depends on the processor.
+    #[test]
+    fn rays_that_differ_by_rounding_alone_have_planes_and_meet_what_is_ahead() {
+        let mut block = Balls::EMPTY;
+        block.set(0, Ball { center: [0.0, 0.0, -2.0], radius: 0.5 });
+        let one = 1.0f32;
+        for depths in [[-one, -one.next_down()], [-one.next_down(), -one], [-one.next_up(), -one], [-one; 2]] {
+            for level in [Level::new(), Level::baseline()] {
+                let (planes, met) = dispatch!(level, simd => around(simd, depths, &block));
+                assert!(planes.iter().all(|plane| plane.normal.is_finite() && plane.offset.is_finite()), "{planes:?}");
+                assert_eq!(met, 1, "{level:?} {depths:?}");
+            }
+        }
     }
 }
