@@ -14,7 +14,7 @@ const SPHERES: u32 = 1_000_000;
 /// A grid of so many squares a side: a million triangles.
 const SIDE: usize = 707;
 
-/// Spheres with radii and colours, as `figures generate` writes them.
+/// Spheres with radii and colours, as `figures gen spheres` writes them.
 fn generated() -> String {
     let mut bytes = Vec::new();
     generate::write_xyz(&generate::random(Rule::Uniform, SPHERES), "spheres", &mut bytes).expect("memory takes all");
