@@ -17,8 +17,8 @@ use crate::{Hit, Ray, Shape, Side, Sphere, Triangle};
 
 /// A primitive at the leaves of a tree.
 pub(crate) trait Leaf: Copy + PartialEq + Send + Sync {
-    /// Bounds of the closest hit's `t`; `None` if nothing in the range is hit, or the hit surely lies beyond `limit`.
-    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate>;
+    /// Bounds of the closest hit's `t`: none if nothing in the range is hit, or the hit surely lies beyond `limit`.
+    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate;
 
     /// The same for eight rays with one origin, as far as a filter decides.
     fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S>;
@@ -67,7 +67,7 @@ pub(crate) enum Surrounds {
 
 impl Leaf for Sphere {
     #[inline(always)]
-    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate> {
+    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate {
         self.candidate::<FMA>(ray, limit)
     }
 
@@ -133,7 +133,7 @@ impl Leaf for Sphere {
 
 impl Leaf for Triangle {
     #[inline(always)]
-    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Option<Candidate> {
+    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate {
         self.candidate::<FMA>(ray, limit)
     }
 
@@ -388,9 +388,8 @@ impl Query for Closest {
 
     #[inline(always)]
     fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
-        if let Some(bounds) = leaf.candidate::<FMA>(ray, self.limit()) {
-            self.offer(bounds, place, leaves, ray);
-        }
+        // Where nothing is hit, both comparisons are false.
+        self.offer(leaf.candidate::<FMA>(ray, self.limit()), place, leaves, ray);
     }
 
     #[inline(always)]
@@ -537,10 +536,9 @@ mod tests {
                         count[if none { 0 } else { 2 - usize::from(some) }] += 1;
                     }
                 }
-                let none = Candidate { low: f64::NAN, high: f64::NAN };
                 let bounds = rays.each_ref().map(|ray| {
                     let prepared = PreparedRay::new(ray, start..end);
-                    leaf.candidate::<false>(&prepared, f64::INFINITY).unwrap_or(none)
+                    leaf.candidate::<false>(&prepared, f64::INFINITY)
                 });
                 let (t, certain) = dispatch!(level, simd => rounded(simd, leaf, &rays, bounds));
                 for (lane, ray) in rays.iter().enumerate().filter(|&(lane, _)| !bounds[lane].low.is_nan()) {

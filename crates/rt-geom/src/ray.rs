@@ -192,12 +192,12 @@ impl<'a> PreparedRay<'a> {
         &self,
         (low, high): (f64, f64),
         limit: f64,
-        exactly: impl FnOnce() -> Option<Candidate>,
-    ) -> Option<Candidate> {
+        exactly: impl FnOnce() -> Candidate,
+    ) -> Candidate {
         if low > limit || low > self.end || high < self.start {
-            None
+            Candidate::NONE
         } else if low > self.start && high < self.end {
-            Some(Candidate { low, high })
+            Candidate { low, high }
         } else {
             exactly()
         }
@@ -208,6 +208,8 @@ impl<'a> PreparedRay<'a> {
 ///
 /// That there is a hit in the range is certain. Of two candidates with `a.high < b.low` the first is closer;
 /// where the bounds overlap, `closest` on both shapes decides, and equal `t` means the lower index.
+///
+/// Where nothing is hit it is [`NONE`](Self::NONE): two numbers travel in registers, and an `Option` of them would not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
     pub(crate) low: f64,
@@ -215,9 +217,18 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
+    /// No hit. Every comparison with its bounds is false.
+    pub(crate) const NONE: Self = Self { low: f64::NAN, high: f64::NAN };
+
     /// A hit whose `t` is known, if it is not beyond `limit`.
-    pub(crate) fn exact(t: Option<f64>, limit: f64) -> Option<Self> {
-        t.filter(|&t| t <= limit).map(|t| Self { low: t, high: t })
+    pub(crate) fn exact(t: Option<f64>, limit: f64) -> Self {
+        t.filter(|&t| t <= limit).map_or(Self::NONE, |t| Self { low: t, high: t })
+    }
+
+    /// Whether there is a hit.
+    #[inline(always)]
+    pub(crate) fn is_some(&self) -> bool {
+        self.low <= self.high
     }
 }
 

@@ -66,7 +66,7 @@ pub(super) fn closest_kernel<const FMA: bool, S: Simd>(
             let roots = crossing.approximation();
             let mut first = crossing.first(start, &roots);
             if first.is_none() && start.to_bits() == 0 {
-                first = crossing.first_by_side(exact::side(sphere, ray.origin()), &roots);
+                first = roots.first_by_side(exact::side(sphere, ray.origin()));
             }
             match first {
                 Some(Some(place)) => rounded::<FMA, _>(simd, sphere, ray, &crossing, &roots, place),
@@ -120,12 +120,12 @@ impl Sphere {
         }
     }
 
-    /// Returns bounds of the closest hit's `t`, or `None` if nothing in the range is hit or the hit surely lies
-    /// beyond `limit`.
+    /// Returns bounds of the closest hit's `t`: none if nothing in the range is hit or the hit surely lies beyond
+    /// `limit`.
     #[inline(always)]
-    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Candidate {
         match filter::<FMA>(self, prepared.ray) {
-            FilterVerdict::Misses => None,
+            FilterVerdict::Misses => Candidate::NONE,
             FilterVerdict::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
@@ -133,13 +133,13 @@ impl Sphere {
 
     /// Returns the candidate of a line that crosses the surface.
     #[inline(always)]
-    fn offer(&self, crossing: &SphereCrossing, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+    fn offer(&self, crossing: &SphereCrossing, prepared: &PreparedRay, limit: f64) -> Candidate {
         let roots = crossing.approximation();
         let (low, high) = (roots.near - roots.error, roots.near + roots.error);
         if low > prepared.start && high < prepared.end {
-            (low <= limit).then_some(Candidate { low, high })
+            if low <= limit { Candidate { low, high } } else { Candidate::NONE }
         } else {
-            self.offer_far(crossing, &roots, prepared, limit)
+            self.offer_far(&roots, prepared, limit)
         }
     }
 
@@ -148,17 +148,16 @@ impl Sphere {
     #[inline(never)]
     fn offer_far(
         &self,
-        crossing: &SphereCrossing,
         roots: &Approximation,
         prepared: &PreparedRay,
         limit: f64,
-    ) -> Option<Candidate> {
+    ) -> Candidate {
         let Approximation { near, far, error, .. } = *roots;
         let mut t = if near + error < prepared.start { far } else { near };
         if prepared.start.to_bits() == 0 && near - error <= 0.0 && near + error >= 0.0 {
-            match crossing.first_by_side(exact::side(self, prepared.ray.origin()), roots) {
+            match roots.first_by_side(exact::side(self, prepared.ray.origin())) {
                 Some(Some(WhichRoot::Far)) => t = far,
-                Some(None) => return None,
+                Some(None) => return Candidate::NONE,
                 _ => {}
             }
         }
@@ -167,7 +166,7 @@ impl Sphere {
 
     #[cold]
     #[inline(never)]
-    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
+    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Candidate {
         Candidate::exact(exact::closest(self, ray, within), limit)
     }
 }

@@ -79,21 +79,6 @@ impl SphereCrossing {
         certain.then_some(first)
     }
 
-    /// Which root, if any, is the first from +0.0 on for a ray that starts so near to the surface that the filter does not
-    /// know on which side; `None` if it starts on it, or the other root is near too.
-    ///
-    /// The roots have different signs if the origin is inside, and the same if it is outside.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn first_by_side(&self, side: Side, roots: &Approximation) -> Option<Option<WhichRoot>> {
-        match side {
-            Side::Inside => Some(Some(WhichRoot::Far)),
-            Side::Outside if roots.far - roots.error > 0.0 => Some(Some(WhichRoot::Near)),
-            Side::Outside if roots.far + roots.error < 0.0 => Some(None),
-            _ => None,
-        }
-    }
-
     /// Which root, if any, is the first not before the start of a range; `None` if that is not certain.
     #[inline(always)]
     pub(super) fn first(&self, start: f64, roots: &Approximation) -> Option<Option<WhichRoot>> {
@@ -108,6 +93,23 @@ impl SphereCrossing {
             Some(None)
         } else {
             None
+        }
+    }
+}
+
+impl Approximation {
+    /// Which root, if any, is the first from +0.0 on for a ray that starts so near to the surface that the filter does not
+    /// know on which side; `None` if it starts on it, or the other root is near too.
+    ///
+    /// The roots have different signs if the origin is inside, and the same if it is outside.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn first_by_side(&self, side: Side) -> Option<Option<WhichRoot>> {
+        match side {
+            Side::Inside => Some(Some(WhichRoot::Far)),
+            Side::Outside if self.far - self.error > 0.0 => Some(Some(WhichRoot::Near)),
+            Side::Outside if self.far + self.error < 0.0 => Some(None),
+            _ => None,
         }
     }
 }
@@ -222,7 +224,7 @@ mod tests {
         for i in 0..4096 {
             let (sphere, ray) = case(rng, i);
             let whole = PreparedRay::new(&ray, 0.0..f64::INFINITY);
-            let bounds = sphere.candidate::<true>(&whole, f64::INFINITY).unwrap();
+            let bounds = sphere.candidate::<true>(&whole, f64::INFINITY);
             let Roots::Two(near, _) = integers::roots(&sphere, &ray) else { panic!("{sphere:?} {ray:?}") };
             assert!(bounds.low <= near && near <= bounds.high, "{sphere:?} {ray:?} {bounds:?} {near}");
             assert!(bounds.low < bounds.high);

@@ -199,12 +199,11 @@ impl Triangle {
         self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some()
     }
 
-    /// Returns bounds of the hit's `t`, or `None` if nothing in the range is hit or the hit surely lies beyond
-    /// `limit`.
+    /// Returns bounds of the hit's `t`: none if nothing in the range is hit or the hit surely lies beyond `limit`.
     #[inline(always)]
-    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Option<Candidate> {
+    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Candidate {
         match filter::<FMA>(self, prepared.ray) {
-            FilterVerdict::Misses => None,
+            FilterVerdict::Misses => Candidate::NONE,
             FilterVerdict::Crosses(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
                 self.exact_candidate(prepared.ray, prepared.within(), limit)
             }),
@@ -214,7 +213,7 @@ impl Triangle {
 
     #[cold]
     #[inline(never)]
-    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Option<Candidate> {
+    fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Candidate {
         Candidate::exact(exact::closest(self, ray, within), limit)
     }
 }

@@ -253,7 +253,10 @@ mod tests {
             let ray = Ray::new(origin, target - origin).unwrap();
             let triangle = Triangle::new(a, b, c).unwrap();
             let whole = PreparedRay::new(&ray, f64::NEG_INFINITY..f64::INFINITY);
-            let Some(bounds) = triangle.candidate::<true>(&whole, f64::INFINITY) else { continue };
+            let bounds = triangle.candidate::<true>(&whole, f64::INFINITY);
+            if !bounds.is_some() {
+                continue;
+            }
             let t = integers::integer_t(&triangle, &ray);
             assert!(bounds.low <= t && t <= bounds.high, "{triangle:?} {ray:?} {bounds:?}");
             hits += usize::from(bounds.low < bounds.high);
