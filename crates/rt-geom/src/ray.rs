@@ -188,12 +188,7 @@ impl<'a> PreparedRay<'a> {
     /// Returns what a shape offers whose correctly rounded `t` lies between two bounds: nothing if it is surely out of
     /// the range or beyond `limit`, the bounds if it is surely in the range, and else what `exactly` finds.
     #[inline(always)]
-    pub(crate) fn admit(
-        &self,
-        (low, high): (f64, f64),
-        limit: f64,
-        exactly: impl FnOnce() -> Candidate,
-    ) -> Candidate {
+    pub(crate) fn admit(&self, (low, high): (f64, f64), limit: f64, exactly: impl FnOnce() -> Candidate) -> Candidate {
         if low > limit || low > self.end || high < self.start {
             Candidate::NONE
         } else if low > self.start && high < self.end {

@@ -177,13 +177,14 @@ type Pending = (f64, Part);
 /// Entries that a usual crown needs.
 const SMALL_STACK: usize = 24;
 
-/// A ray as boxes in doubles meet it.
+/// A ray, or many from one origin, as boxes in doubles meet it.
 #[derive(Clone, Debug)]
 pub(super) struct Line64 {
     origin: [f64; 3],
-    inverse: [f64; 3],
     /// Rows of the near planes.
     near: [usize; 3],
+    /// By which distances from the origin are multiplied, to the near planes and to the far ones.
+    inverse: [[f64; 3]; 2],
     within: Range<f64>,
     /// Whether every box is met.
     everything: bool,
@@ -199,10 +200,30 @@ impl Line64 {
         for axis in 0..3 {
             inverse[axis] = 1.0 / direction[axis];
             near[axis] = axis + 3 * usize::from(direction[axis].is_sign_negative());
-            ordinary &= origin[axis].abs() < FARTHEST;
-            ordinary &= direction[axis].abs() > SHORTEST || direction[axis] == 0.0;
+            ordinary &= origin[axis].abs() < FARTHEST && is_ordinary(direction[axis]);
         }
-        Self { origin, inverse, near, within: start..end, everything: !ordinary }
+        Self { origin, inverse: [inverse; 2], near, within: start..end, everything: !ordinary }
+    }
+
+    /// For all rays from the origin whose directions have components between the least and the greatest, none of which
+    /// differ in sign, and a range that begins at zero or later: what is entered first by the greatest component is left
+    /// last by the least.
+    #[inline(always)]
+    pub(super) fn of_many(origin: DVec3, least: DVec3, greatest: DVec3, within: Range<f64>) -> Self {
+        let (mut inverse, mut near) = ([[0.0; 3]; 2], [0; 3]);
+        let mut ordinary = true;
+        for axis in 0..3 {
+            let (least, greatest) = (least[axis], greatest[axis]);
+            let side = usize::from(greatest < 0.0 || least < 0.0);
+            let (fast, slow) = if side == 0 { (greatest, least) } else { (least, greatest) };
+            // Of zeros the sign of the others.
+            let sign = if side == 0 { 1.0 } else { -1.0 };
+            inverse[0][axis] = sign / fast.abs();
+            inverse[1][axis] = sign / slow.abs();
+            near[axis] = axis + 3 * side;
+            ordinary &= origin[axis].abs() < FARTHEST && is_ordinary(fast) && is_ordinary(slow);
+        }
+        Self { origin: origin.to_array(), inverse, near, within, everything: !ordinary }
     }
 
     /// Whether a box may be met: the test of a node's boxes, for one.
@@ -211,10 +232,10 @@ impl Line64 {
         let planes = [bounds.low.to_array(), bounds.high.to_array()];
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         for axis in [0, 1, 2] {
-            let side = self.near[axis] / 3;
+            let (side, [near, far]) = (self.near[axis] / 3, self.inverse);
             // NaN bounds nothing.
-            enter = larger((planes[side][axis] - self.origin[axis]) * self.inverse[axis], enter);
-            leave = smaller((planes[1 - side][axis] - self.origin[axis]) * self.inverse[axis], leave);
+            enter = larger((planes[side][axis] - self.origin[axis]) * near[axis], enter);
+            leave = smaller((planes[1 - side][axis] - self.origin[axis]) * far[axis], leave);
         }
         let enter = enter - (enter.abs() * PARAMETER_ERROR + UNDERFLOW);
         let leave = leave + (leave.abs() * PARAMETER_ERROR + UNDERFLOW);
@@ -228,8 +249,8 @@ impl Line64 {
         let mut met = 0;
         let (start, end) = (f64x8::splat(simd, self.within.start), f64x8::splat(simd, self.within.end));
         for (half, enters) in enters.as_chunks_mut::<8>().0.iter_mut().enumerate().take(node.len.div_ceil(8)) {
-            let near = |axis: usize| (self.near[axis], axis, 8 * half);
-            let far = |axis: usize| ((self.near[axis] + 3) % 6, axis, 8 * half);
+            let near = |axis: usize| (self.near[axis], self.inverse[0][axis], axis, 8 * half);
+            let far = |axis: usize| ((self.near[axis] + 3) % 6, self.inverse[1][axis], axis, 8 * half);
             let enter = self.plane(simd, node, near(0)).max(self.plane(simd, node, near(1)));
             let enter = enter.max(self.plane(simd, node, near(2)));
             let leave = self.plane(simd, node, far(0)).min(self.plane(simd, node, far(1)));
@@ -247,9 +268,15 @@ impl Line64 {
     /// Where the line meets a row of planes. NaN, of a line in a plane, which lies outside the box, meets nothing or
     /// leaves the decision to the other planes.
     #[inline(always)]
-    fn plane<S: Simd>(&self, simd: S, node: &Node, (row, axis, lane): (usize, usize, usize)) -> f64x8<S> {
-        (f64x8::from_slice(simd, &node.planes[row][lane..lane + 8]) - self.origin[axis]) * self.inverse[axis]
+    fn plane<S: Simd>(&self, simd: S, node: &Node, (row, inverse, axis, lane): (usize, f64, usize, usize)) -> f64x8<S> {
+        (f64x8::from_slice(simd, &node.planes[row][lane..lane + 8]) - self.origin[axis]) * inverse
     }
+}
+
+/// Whether a component of a direction is one for which the margins are proved.
+#[inline(always)]
+fn is_ordinary(component: f64) -> bool {
+    component.abs() > SHORTEST || component == 0.0
 }
 
 /// The way of one ray through a crown.
@@ -344,8 +371,7 @@ mod tests {
     use crate::simd::dispatch;
 
     /// All that a tour gives.
-    fn met(crown: &Crown, level: Level, ray: &Ray, within: Range<f64>) -> Vec<Part> {
-        let line = Line64::new(&PreparedRay::new(ray, within));
+    fn met(crown: &Crown, level: Level, line: Line64) -> Vec<Part> {
         if !crown.is_met(&line) {
             return Vec::new();
         }
@@ -354,7 +380,24 @@ mod tests {
         std::iter::from_fn(|| dispatch!(level, simd => tour.next(simd, crown, false, f64::INFINITY, visits))).collect()
     }
 
-    /// Flat boxes of which one corner is met, within a range of one double, at any scale.
+    fn line(ray: &Ray, within: Range<f64>) -> Line64 {
+        Line64::new(&PreparedRay::new(ray, within))
+    }
+
+    /// The ray with others from its origin, of which each component has the same sign or is zero.
+    fn with_others(ray: &Ray, within: Range<f64>, random: &mut Random) -> Line64 {
+        let (mut least, mut greatest) = (ray.direction(), ray.direction());
+        for _ in 0..random.below(4) {
+            let zero = random.one_in(4);
+            // Of zeros the sign says nothing.
+            let share = if zero { random.pick(&[DVec3::ZERO, -DVec3::ZERO]) } else { 1.5 * random.point().abs() };
+            let other = share * ray.direction();
+            (least, greatest) = (least.min(other), greatest.max(other));
+        }
+        Line64::of_many(ray.origin(), least, greatest, within)
+    }
+
+    /// Flat boxes of which one corner is met, within a range of one double, at any scale, by a ray and by many.
     #[test]
     fn the_crown_drops_no_hit_and_most_of_the_rest() {
         let random = &mut Random::new(3);
@@ -388,10 +431,17 @@ mod tests {
             for (i, triangle) in (0..).zip(&triangles) {
                 let Some(t) = triangle.closest(&ray, f64::NEG_INFINITY..f64::INFINITY) else { continue };
                 for level in [Level::new(), Level::baseline()] {
-                    let met = met(&crown, level, &ray, t..t.next_up());
-                    assert!(met.contains(&Part::Triangle(i)), "{level:?} {t:?} {ray:?} {triangle:?}");
-                    kept += met.len();
+                    let met_by = |line: Line64| {
+                        let met = met(&crown, level, line);
+                        assert!(met.contains(&Part::Triangle(i)), "{level:?} {t:?} {ray:?} {triangle:?}");
+                        met.len()
+                    };
+                    kept += met_by(line(&ray, t..t.next_up()));
                     hits += 1;
+                    if t >= 0.0 {
+                        met_by(with_others(&ray, t..t.next_up(), random));
+                        met_by(with_others(&ray, 0.0..t.next_up(), random));
+                    }
                 }
             }
         }
@@ -419,7 +469,7 @@ mod tests {
             (x * 1e200, x, 2),
         ] {
             let ray = Ray::new(origin, direction).unwrap();
-            assert_eq!(met(&crown, Level::new(), &ray, all.clone()).len(), count, "{ray:?}");
+            assert_eq!(met(&crown, Level::new(), line(&ray, all.clone())).len(), count, "{ray:?}");
         }
     }
 }

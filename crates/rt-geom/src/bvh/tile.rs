@@ -14,14 +14,15 @@ use fearless_simd::{Simd, f32x16, f64x8, mask64x8, prelude::*, u32x16};
 use glam::{DVec3, Vec3};
 
 use super::Bvh;
+use super::crown::{Crown, Line64, Part, Tour};
 use super::cull::{LINE_ERROR, MAX_INVERSE, Slab, U, across, bits, load, slabs};
-use super::node::{Balls, Block, Blocked, Boxes, Frame, Kind, Lanes, WIDTH, up};
-use super::walk::{Areas, Pending, child, nearest, pending};
+use super::node::{Balls, Block, Blocked, Boxes, Frame, Kind, Lanes, Region, WIDTH, up};
+use super::walk::{Areas, Pending, child, nearest, pending, visit};
 use crate::lanes::PencilLanes;
 use crate::leaf::{Closest, Leaves, Query, finish};
-use crate::ray::{Candidate, PreparedRay};
+use crate::ray::{Candidate, PreparedRay, larger, smaller};
 use crate::simd::{has_fma, prefetch_lines};
-use crate::{Hit, Ray};
+use crate::{Hit, Ray, Sphere, Triangle, Visits};
 
 /// Rays of a tile at most.
 pub(super) const RAYS: usize = 64;
@@ -96,7 +97,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// For [`set`](Self::set) to fill, in a tree of so many primitives.
+    /// For [`gather`](Self::gather) and [`enter`](Self::enter) to fill, in a tree of so many primitives.
     #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "no answer depends on it")]
     pub(super) fn new(spheres: usize, triangles: usize) -> Self {
         let widest = WIDEST / ((spheres + triangles) as f64).cbrt() as f32;
@@ -134,10 +135,9 @@ impl Tile {
         }
     };
 
-    /// Prepares the rays; `false` if they do not make a tile, because they have several origins, are too far apart or
-    /// too far away, or one is not ordinary.
+    /// Takes up the rays; `false` if they have several origins.
     #[inline(always)]
-    pub(super) fn set<S: Simd>(&mut self, simd: S, frame: &Frame, rays: &[Ray], order: &[usize], end: f64) -> bool {
+    fn gather(&mut self, rays: &[Ray], order: &[usize]) -> bool {
         let first = &rays[order[0]];
         self.count = order.len();
         self.work = 0;
@@ -155,7 +155,20 @@ impl Tile {
             self.inverse_square[lane] = ray.inverse_square();
         }
         self.origin64 = first.origin();
-        let origin = frame.point(first.origin());
+        self.low[..lanes].fill(f64::INFINITY);
+        self.high[..lanes].fill(f64::INFINITY);
+        self.place[..lanes].fill(Closest::NOWHERE);
+        // Nothing is better than what these lanes have.
+        self.low[order.len()..lanes].fill(0.0);
+        self.high[order.len()..lanes].fill(0.0);
+        true
+    }
+
+    /// Makes the rays ready in a frame; `false` if they do not make a tile there, because they are too far apart or too
+    /// far away, or one is not ordinary.
+    #[inline(always)]
+    fn enter<S: Simd>(&mut self, simd: S, frame: &Frame, end: f64) -> bool {
+        let origin = frame.point(self.origin64);
         let reach = 1.0 + (origin.x.abs() + origin.y.abs() + origin.z.abs());
         if reach.is_nan() || reach > REACH {
             return false;
@@ -164,12 +177,6 @@ impl Tile {
         self.error = reach * LINE_ERROR;
         self.farthest = up(reach);
         self.slack = SLACK * self.farthest + up(self.error);
-        self.low[..lanes].fill(f64::INFINITY);
-        self.high[..lanes].fill(f64::INFINITY);
-        self.place[..lanes].fill(Closest::NOWHERE);
-        // Nothing is better than what these lanes have.
-        self.low[order.len()..lanes].fill(0.0);
-        self.high[order.len()..lanes].fill(0.0);
 
         let (mut least, mut greatest) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for group in 0..self.groups() {
@@ -211,6 +218,23 @@ impl Tile {
         }
         self.find_last(simd);
         true
+    }
+
+    /// All rays as the crown meets them; `None` if the directions differ in the sign of a component.
+    #[inline(always)]
+    fn line(&self, within: &Range<f64>) -> Option<Line64> {
+        let directions = self.direction.each_ref().map(|numbers| &numbers[..self.count]);
+        let least = DVec3::from(directions.map(|numbers| numbers.iter().copied().fold(f64::INFINITY, smaller)));
+        let greatest = DVec3::from(directions.map(|numbers| numbers.iter().copied().fold(f64::NEG_INFINITY, larger)));
+        let ordinary = self.reach[..self.count].iter().all(|&reach| reach > 0.0);
+        let one_sign = (least.cmpge(DVec3::ZERO) | greatest.cmple(DVec3::ZERO)).all();
+        (ordinary && one_sign).then(|| Line64::of_many(self.origin64, least, greatest, within.clone()))
+    }
+
+    /// No hit beyond this changes an answer.
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.high[..self.count].iter().copied().fold(0.0, larger)
     }
 
     fn groups(&self) -> usize {
@@ -446,18 +470,125 @@ pub(super) fn closest<S: Simd>(
     answers: &mut [Option<Hit>],
     most: u32,
 ) -> Outcome {
-    let [region] = &tree.regions[..] else { return Outcome::NoTile };
-    if tree.crown.is_some() || !tile.set(simd, &region.frame, rays, order, within.end) {
+    if !tile.gather(rays, order) {
         return Outcome::NoTile;
     }
+    let done = match (&tree.crown, tree.regions.first()) {
+        (Some(crown), _) => travel(simd, tree, crown, (tile, stack), (rays, order), within, most),
+        (None, Some(region)) => {
+            tile.enter(simd, &region.frame, within.end)
+                && walk(simd, tree, region, (tile, stack), (rays, order), within, most)
+        }
+        (None, None) => true,
+    };
+    if !done {
+        return Outcome::NoTile;
+    }
+    for (first, targets) in (0..).step_by(EIGHT).zip(order.chunks(EIGHT)) {
+        let mut best: [Closest; EIGHT] = std::array::from_fn(|lane| tile.best(first + lane));
+        let lanes: [&Ray; EIGHT] = std::array::from_fn(|lane| &rays[targets[lane.min(targets.len() - 1)]]);
+        finish(simd, &tree.leaves, &mut best, lanes);
+        for (mut best, &target) in best.into_iter().zip(targets) {
+            answers[target] = best.answer(&tree.leaves, &PreparedRay::new(&rays[target], within.clone()));
+        }
+    }
+    Outcome::Done(tile.work)
+}
+
+/// Takes the tile through the crown and all regions below that it may meet; `false` if it takes more than `most` tests.
+/// In a region where the rays make no tile they walk one by one.
+#[cold]
+#[inline(never)]
+fn travel<S: Simd>(
+    simd: S,
+    tree: &Bvh,
+    crown: &Crown,
+    (tile, stack): (&mut Tile, &mut [Pending]),
+    (rays, order): (&[Ray], &[usize]),
+    within: &Range<f64>,
+    most: u32,
+) -> bool {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let Some(line) = tile.line(within) else { return false };
+            if !crown.is_met(&line) {
+                return true;
+            }
+            let mut tour = Tour::new(crown, line);
+            let visits = &mut Visits::default();
+            while let Some(part) = tour.next(simd, crown, false, tile.limit(), visits) {
+                tile.work += 1;
+                match part {
+                    Part::Region(index) => {
+                        let region = &tree.regions[index as usize];
+                        if !tile.enter(simd, &region.frame, within.end) {
+                            one_by_one(simd, tree, region, tile, (rays, order), within);
+                        } else if !walk(simd, tree, region, (tile, stack), (rays, order), within, most) {
+                            return false;
+                        }
+                    }
+                    Part::Sphere(place) => {
+                        offer::<S, Sphere>(simd, place as usize, u64::MAX, tile, tree, (rays, order), within);
+                    }
+                    Part::Triangle(place) => {
+                        offer::<S, Triangle>(simd, place as usize, u64::MAX, tile, tree, (rays, order), within);
+                    }
+                    Part::Node(_) => unreachable!("a tour goes through nodes"),
+                }
+                if tile.work > most {
+                    return false;
+                }
+            }
+            true
+        },
+    )
+}
+
+/// Takes the rays through a region one by one.
+#[cold]
+#[inline(never)]
+fn one_by_one<S: Simd>(
+    simd: S,
+    tree: &Bvh,
+    region: &Region,
+    tile: &mut Tile,
+    (rays, order): (&[Ray], &[usize]),
+    within: &Range<f64>,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let visits = &mut Visits::default();
+            for (lane, &ray) in order.iter().enumerate() {
+                let mut best = tile.best(lane);
+                visit(simd, tree, region, &PreparedRay::new(&rays[ray], within.clone()), &mut best, visits);
+                tile.keep(lane, &best);
+            }
+            tile.work = tile.work.saturating_add(u32::try_from(visits.nodes).unwrap_or(u32::MAX));
+        },
+    );
+}
+
+/// Takes the tile through a region; `false` if it takes more than `most` tests.
+#[inline(always)]
+fn walk<S: Simd>(
+    simd: S,
+    tree: &Bvh,
+    region: &Region,
+    (tile, stack): (&mut Tile, &mut [Pending]),
+    (rays, order): (&[Ray], &[usize]),
+    within: &Range<f64>,
+    most: u32,
+) -> bool {
     let mut keys = [0; WIDTH];
     let areas = Areas::of(tree);
     let mut height = 0;
     let mut at = region.root;
-    'walk: loop {
+    loop {
         tile.work += 1;
         if tile.work > most {
-            return Outcome::NoTile;
+            return false;
         }
         match at.kind() {
             Kind::Inner => {
@@ -495,7 +626,7 @@ pub(super) fn closest<S: Simd>(
         let last = tile.last.to_bits();
         loop {
             if height == 0 {
-                break 'walk;
+                return true;
             }
             height -= 1;
             if (stack[height] >> 32) as u32 <= last {
@@ -504,15 +635,6 @@ pub(super) fn closest<S: Simd>(
             }
         }
     }
-    for (first, targets) in (0..).step_by(EIGHT).zip(order.chunks(EIGHT)) {
-        let mut best: [Closest; EIGHT] = std::array::from_fn(|lane| tile.best(first + lane));
-        let lanes: [&Ray; EIGHT] = std::array::from_fn(|lane| &rays[targets[lane.min(targets.len() - 1)]]);
-        finish(simd, &tree.leaves, &mut best, lanes);
-        for (mut best, &target) in best.into_iter().zip(targets) {
-            answers[target] = best.answer(&tree.leaves, &PreparedRay::new(&rays[target], within.clone()));
-        }
-    }
-    Outcome::Done(tile.work)
 }
 
 impl Tile {
@@ -520,6 +642,11 @@ impl Tile {
     #[inline(always)]
     fn best(&self, lane: usize) -> Closest {
         Closest { bounds: Candidate { low: self.low[lane], high: self.high[lane] }, place: self.place[lane] }
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, lane: usize, best: &Closest) {
+        (self.low[lane], self.high[lane], self.place[lane]) = (best.bounds.low, best.bounds.high, best.place);
     }
 }
 
@@ -626,7 +753,7 @@ fn alone<S: Simd, L: Blocked>(
         best.meet::<false, _>(leaf, place, leaves, &prepared);
     }
     let changed = u64::from(best.bounds.high < tile.high[lane]) << lane;
-    (tile.low[lane], tile.high[lane], tile.place[lane]) = (best.bounds.low, best.bounds.high, best.place);
+    tile.keep(lane, &best);
     changed
 }
 
@@ -645,7 +772,7 @@ mod tests {
     fn near<S: Simd, B: TileBlock>(simd: S, frame: &Frame, rays: &[Ray], block: &B, ends: &[f64]) -> Option<[u64; 16]> {
         let order: Vec<usize> = (0..rays.len()).collect();
         let mut tile = Tile::new(1, 1);
-        if !tile.set(simd, frame, rays, &order, f64::INFINITY) {
+        if !(tile.gather(rays, &order) && tile.enter(simd, frame, f64::INFINITY)) {
             return None;
         }
         tile.high[..ends.len()].copy_from_slice(ends);

@@ -143,7 +143,7 @@ fn after<'a, S: Simd, Q: Query>(
 
 /// Takes a ray through a region.
 #[inline(always)]
-fn visit<S: Simd, Q: Query>(
+pub(super) fn visit<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
     region: &Region,

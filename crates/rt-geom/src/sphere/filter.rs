@@ -146,12 +146,7 @@ impl Sphere {
     /// The same where the near root is not surely in the range. Apart, so that the usual case waits for no choice of
     /// the root.
     #[inline(never)]
-    fn offer_far(
-        &self,
-        roots: &Approximation,
-        prepared: &PreparedRay,
-        limit: f64,
-    ) -> Candidate {
+    fn offer_far(&self, roots: &Approximation, prepared: &PreparedRay, limit: f64) -> Candidate {
         let Approximation { near, far, error, .. } = *roots;
         let mut t = if near + error < prepared.start { far } else { near };
         if prepared.start.to_bits() == 0 && near - error <= 0.0 && near + error >= 0.0 {
