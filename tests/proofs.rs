@@ -184,7 +184,13 @@ const FILES: &[File] = &[
             ("VOLUME_ERROR", "rt-geom/src/triangle/locate.rs", "let error = ", " * (edge * edge) * far + UNDERFLOW;"),
         ],
     ),
-    ("Near", &[("NEAR_ERROR", "rt-geom/src/enclosing/mod.rs", "bracket.low * (1.0 - ", ") - shift.abs()")]),
+    (
+        "Near",
+        &[
+            ("NEAR_ERROR", "rt-geom/src/enclosing/mod.rs", "bracket.low * (1.0 - ", ") - shift.abs()"),
+            ("INSIDE", "rt-geom/src/enclosing/apart.rs", "const INSIDE: f64 = ", ";"),
+        ],
+    ),
     (
         "Nodes",
         &[

@@ -185,3 +185,38 @@ Proof.
     { rewrite <- norm_opp. f_equal; ring. }
     rewrite E in T. rewrite u_val in *. lra.
 Qed.
+
+(* enclosing/apart.rs, `excess` and `is_inside`: the same for offsets from the center of a bracket itself. *)
+Definition INSIDE := 64 * u.
+
+(* A sphere that counts as inside reaches no farther from the center C than `low`. *)
+Theorem INSIDE_holds : forall b1 b2 b3 r C1 C2 C3 low,
+  F b1 -> F b2 -> F b3 -> F r -> F C1 -> F C2 -> F C3 -> F low -> 0 <= r -> bp (-140) <= low ->
+  let d1 := RN (b1 - C1) in let d2 := RN (b2 - C2) in let d3 := RN (b3 - C3) in
+  Rabs d1 <= bp 1023 -> Rabs d2 <= bp 1023 -> Rabs d3 <= bp 1023 ->
+  let limit := RN (low * (1 - INSIDE)) in
+  let room := RN (limit - r) in RN (squares d1 d2 d3 - RN (room * Rabs room)) < 0 ->
+  norm (b1 - C1) (b2 - C2) (b3 - C3) + r <= low.
+Proof.
+  intros b1 b2 b3 r C1 C2 C3 low Fb1 Fb2 Fb3 Fr FC1 FC2 FC3 Fl Hr Hlow d1 d2 d3 B1 B2 B3 limit room H.
+  pose proof u_pos as U. pose proof (bp_pos (-140)) as L0. pose proof (bp_pos (-525)) as T0.
+  pose proof (measured d1 d2 d3 limit r B1 B2 B3 (RN_F _) Fr Hr H) as M.
+  assert (T1 : bp (-525) <= / 1000 * (u * low)).
+  { apply Rle_trans with (bp (-10 + (-53 + -140))); [apply bp_le; lia|]. rewrite !bp_add. fold u.
+    assert (u * bp (-140) <= u * low) by (apply Rmult_le_compat_l; lra). assert (bp (-10) <= / 1000) by (simpl; lra).
+    pose proof (bp_pos (-10)). apply Rmult_le_compat; try lra. apply Rmult_le_pos; lra. }
+  assert (T2 : bp (-1075) <= bp (-525)) by (apply bp_le; lia).
+  pose proof (RN_err (low * (1 - INSIDE))) as E. fold limit in E. unfold INSIDE in E.
+  assert (K0 : 0 <= low * (1 - 64 * u)) by (apply Rmult_le_pos; rewrite ?u_val; lra).
+  rewrite (Rabs_pos_eq (low * (1 - 64 * u))) in E by assumption. apply Rabs_le_inv in E.
+  pose proof (norm_difference (b1 - C1) (b2 - C2) (b3 - C3) d1 d2 d3) as T.
+  assert (P : norm (b1 - C1 - d1) (b2 - C2 - d2) (b3 - C3 - d3) <= u * norm (b1 - C1) (b2 - C2) (b3 - C3)).
+  { assert (G : forall b C, F b -> F C -> Rabs (b - C - RN (b - C)) <= u * Rabs (b - C))
+      by (intros b C Fb FC; rewrite Rabs_minus_sym; now apply RN_diff).
+    apply norm_relative; try lra; now apply G. }
+  pose proof (norm_pos (b1 - C1) (b2 - C2) (b3 - C3)) as N0. pose proof (norm_pos d1 d2 d3) as D0.
+  set (n := norm (b1 - C1) (b2 - C2) (b3 - C3)) in *. set (d := norm d1 d2 d3) in *.
+  assert (N : n <= (1 + 2 * u) * d) by (rewrite u_val in *; lra).
+  assert (D : d <= 2 * low) by (rewrite u_val in *; lra).
+  rewrite u_val in *. lra.
+Qed.

@@ -6,6 +6,7 @@
 //! and the radius grows. When nothing sticks out, that is the answer. (Welzl's recursion, which does this for points,
 //! is wrong for spheres: K. Fischer and B. Gärtner, "The smallest enclosing ball of balls", 2004.)
 
+mod apart;
 mod certify;
 mod exact;
 mod extreme;
@@ -95,6 +96,10 @@ fn enclosing<S: Simd>(simd: S, spheres: &[Sphere]) -> Option<Enclosing> {
         [] => None,
         [one] => Some(Enclosing::single(0, one)),
         [a, b] => two(simd, spheres, a, b),
+        [_, _, _] | [_, _, _, _] => simd.vectorize(
+            #[inline(always)]
+            || apart::three_or_four(simd, spheres),
+        ),
         // Each in a function of its own, for the compiler's sake.
         _ if spheres.len() <= LANES => simd.vectorize(
             #[inline(always)]

@@ -130,6 +130,16 @@ impl<T: SolverNumber> Tangent<T> {
         }
     }
 
+    /// The minimal sphere of at most four spheres, if it touches all of them.
+    #[inline(always)]
+    pub(super) fn of(places: &[usize], spheres: &[Sphere]) -> Option<Self> {
+        let mut all = Self::single(places[0]);
+        for &place in &places[1..] {
+            all.push(place, spheres);
+        }
+        (all.solve(spheres) && all.most_negative(usize::MAX).is_none()).then_some(all)
+    }
+
     /// The places of the spheres, the largest first.
     #[inline(always)]
     pub(super) fn support(&self) -> &[usize] {
