@@ -3,32 +3,28 @@
 //!
 //! At a node the whole tile is culled at once, by the greatest and the least component of its directions along each axis.
 //! At a leaf block balls meet the four planes around the tile; what is left meets the tile's rays, sixteen at a time in
-//! f32, and then the exact kernels' filter, eight at a time in f64. All that a filter leaves open goes to the kernels
-//! one by one, so every ray gets the answer that it would get alone. (I. Wald et al., "Interactive Rendering with
+//! f32. The walk is in `tile_walk.rs`; every ray gets the answer that it would get alone. (I. Wald et al., "Interactive Rendering with
 //! Coherent Ray Tracing", 2001; K. Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007, for one
 //! test of a whole packet.)
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, f32x16, f64x8, mask64x8, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x16, f64x8, prelude::*};
 use glam::{DVec3, Vec3};
 
-use super::Bvh;
-use super::crown::{Crown, Line64, Part, Tour};
+use super::crown::Line64;
 use super::cull::{LINE_ERROR, MAX_INVERSE, Slab, U, across, bits, load, slabs};
-use super::node::{Balls, Block, Blocked, Boxes, Frame, Kind, Lanes, Region, WIDTH, up};
-use super::walk::{Areas, Pending, child, nearest, pending, visit};
+use super::node::{Balls, Block, Boxes, Frame, Lanes, WIDTH, up};
+use crate::Ray;
 use crate::lanes::PencilLanes;
-use crate::leaf::{Closest, Leaves, Query, finish};
-use crate::ray::{Candidate, PreparedRay, larger, smaller};
-use crate::simd::{has_fma, prefetch_lines};
-use crate::{Hit, Ray, Sphere, Triangle, Visits};
+use crate::leaf::Closest;
+use crate::ray::{Candidate, larger, smaller};
 
 /// Rays of a tile at most.
 pub(super) const RAYS: usize = 64;
 const GROUPS: usize = RAYS / WIDTH;
 /// Rays that meet a primitive in f64 at once.
-const EIGHT: usize = 8;
+pub(super) const EIGHT: usize = 8;
 
 /// The rounding errors of all tests in f32, as a distance, for each unit of the largest parameter.
 const SLACK: f32 = 32.0 * U;
@@ -66,7 +62,7 @@ pub(super) struct Tile {
     has_balls: bool,
     has_boxes: bool,
     /// Tests of bounds so far.
-    work: u32,
+    pub(super) work: u32,
     /// In f32 and cull coordinates: the origin, unit directions and their reciprocals, and the parameters up to which
     /// each ray is of interest.
     origin: Vec3,
@@ -74,12 +70,12 @@ pub(super) struct Tile {
     inverse: [[Lanes; 3]; GROUPS],
     end: [Lanes; GROUPS],
     /// The greatest of these, and what none exceeds: `D` of the numerics.
-    last: f32,
+    pub(super) last: f32,
     farthest: f32,
     slack: f32,
     /// The cull of boxes for all rays at once.
-    near: [Slab; 3],
-    far: [Slab; 3],
+    pub(super) near: [Slab; 3],
+    pub(super) far: [Slab; 3],
     /// The cull of balls for all rays at once: the four sides, and in front.
     planes: [Plane; 5],
     origin64: DVec3,
@@ -91,9 +87,9 @@ pub(super) struct Tile {
     length: [f64; RAYS],
     error: f64,
     /// The best hits so far.
-    low: [f64; RAYS],
-    high: [f64; RAYS],
-    place: [usize; RAYS],
+    pub(super) low: [f64; RAYS],
+    pub(super) high: [f64; RAYS],
+    pub(super) place: [usize; RAYS],
 }
 
 impl Tile {
@@ -137,7 +133,7 @@ impl Tile {
 
     /// Takes up the rays; `false` if they have several origins.
     #[inline(always)]
-    fn gather(&mut self, rays: &[Ray], order: &[usize]) -> bool {
+    pub(super) fn gather(&mut self, rays: &[Ray], order: &[usize]) -> bool {
         let first = &rays[order[0]];
         self.count = order.len();
         self.work = 0;
@@ -167,7 +163,7 @@ impl Tile {
     /// Makes the rays ready in a frame; `false` if they do not make a tile there, because they are too far apart or too
     /// far away, or one is not ordinary.
     #[inline(always)]
-    fn enter<S: Simd>(&mut self, simd: S, frame: &Frame, end: f64) -> bool {
+    pub(super) fn enter<S: Simd>(&mut self, simd: S, frame: &Frame, end: f64) -> bool {
         let origin = frame.point(self.origin64);
         let reach = 1.0 + (origin.x.abs() + origin.y.abs() + origin.z.abs());
         if reach.is_nan() || reach > REACH {
@@ -222,7 +218,7 @@ impl Tile {
 
     /// All rays as the crown meets them; `None` if the directions differ in the sign of a component.
     #[inline(always)]
-    fn line(&self, within: &Range<f64>) -> Option<Line64> {
+    pub(super) fn line(&self, within: &Range<f64>) -> Option<Line64> {
         let directions = self.direction.each_ref().map(|numbers| &numbers[..self.count]);
         let least = DVec3::from(directions.map(|numbers| numbers.iter().copied().fold(f64::INFINITY, smaller)));
         let greatest = DVec3::from(directions.map(|numbers| numbers.iter().copied().fold(f64::NEG_INFINITY, larger)));
@@ -233,11 +229,11 @@ impl Tile {
 
     /// No hit beyond this changes an answer.
     #[inline(always)]
-    fn limit(&self) -> f64 {
+    pub(super) fn limit(&self) -> f64 {
         self.high[..self.count].iter().copied().fold(0.0, larger)
     }
 
-    fn groups(&self) -> usize {
+    pub(super) fn groups(&self) -> usize {
         self.count.div_ceil(WIDTH)
     }
 
@@ -313,7 +309,7 @@ impl Tile {
 
     /// What the rays of a group meet beyond `limit` is of no interest any more, nor beyond their best hits.
     #[inline(always)]
-    fn shorten<S: Simd>(&mut self, simd: S, group: usize, limit: f64) {
+    pub(super) fn shorten<S: Simd>(&mut self, simd: S, group: usize, limit: f64) {
         let at = WIDTH * group;
         let end = self.ends(simd, at, limit).narrow(self.ends(simd, at + EIGHT, limit));
         // The rounding to f32.
@@ -329,7 +325,7 @@ impl Tile {
     }
 
     #[inline(always)]
-    fn find_last<S: Simd>(&mut self, simd: S) {
+    pub(super) fn find_last<S: Simd>(&mut self, simd: S) {
         let mut last = f32x16::splat(simd, 0.0);
         for end in &self.end[..self.groups()] {
             last = last.max(load(simd, end));
@@ -375,9 +371,20 @@ impl Tile {
         met
     }
 
+    /// The best hit of a ray so far.
+    #[inline(always)]
+    pub(super) fn best(&self, lane: usize) -> Closest {
+        Closest { bounds: Candidate { low: self.low[lane], high: self.high[lane] }, place: self.place[lane] }
+    }
+
+    #[inline(always)]
+    pub(super) fn keep(&mut self, lane: usize, best: &Closest) {
+        (self.low[lane], self.high[lane], self.place[lane]) = (best.bounds.low, best.bounds.high, best.place);
+    }
+
     /// Eight rays for the filters.
     #[inline(always)]
-    fn lanes<S: Simd>(&self, simd: S, at: usize) -> PencilLanes<S> {
+    pub(super) fn lanes<S: Simd>(&self, simd: S, at: usize) -> PencilLanes<S> {
         let [x, y, z] = &self.direction;
         PencilLanes {
             origin: self.origin64,
@@ -390,7 +397,7 @@ impl Tile {
 }
 
 #[inline(always)]
-fn eight<S: Simd>(simd: S, numbers: &[f64; RAYS], at: usize) -> f64x8<S> {
+pub(super) fn eight<S: Simd>(simd: S, numbers: &[f64; RAYS], at: usize) -> f64x8<S> {
     f64x8::from_slice(simd, &numbers[at..at + EIGHT])
 }
 
@@ -412,7 +419,7 @@ fn dot<S: Simd>(simd: S, along: &[Lanes; 3], v: Vec3) -> f32x16<S> {
 }
 
 /// Which of a block's bounds the tile, and which of its rays each may meet.
-trait TileBlock: Block {
+pub(super) trait TileBlock: Block {
     fn meet_tile<S: Simd>(&self, simd: S, tile: &Tile) -> u32;
     fn near<S: Simd>(&self, simd: S, tile: &Tile, lane: usize) -> u64;
 }
@@ -449,312 +456,6 @@ impl TileBlock for Boxes {
     fn near<S: Simd>(&self, simd: S, tile: &Tile, lane: usize) -> u64 {
         tile.near_box(simd, self, lane)
     }
-}
-
-/// What has become of a tile.
-pub(super) enum Outcome {
-    /// The rays do not make one, or it costs too much: their answers are not written.
-    NoTile,
-    /// All answers are written, after this many tests of bounds.
-    Done(u32),
-}
-
-/// Writes the closest hits of the rays in this order, unless they do not make a tile or take more than `most` tests.
-#[inline(always)]
-pub(super) fn closest<S: Simd>(
-    simd: S,
-    tree: &Bvh,
-    (tile, stack): (&mut Tile, &mut [Pending]),
-    (rays, order): (&[Ray], &[usize]),
-    within: &Range<f64>,
-    answers: &mut [Option<Hit>],
-    most: u32,
-) -> Outcome {
-    if !tile.gather(rays, order) {
-        return Outcome::NoTile;
-    }
-    let done = match (&tree.crown, tree.regions.first()) {
-        (Some(crown), _) => travel(simd, tree, crown, (tile, stack), (rays, order), within, most),
-        (None, Some(region)) => {
-            tile.enter(simd, &region.frame, within.end)
-                && walk(simd, tree, region, (tile, stack), (rays, order), within, most)
-        }
-        (None, None) => true,
-    };
-    if !done {
-        return Outcome::NoTile;
-    }
-    for (first, targets) in (0..).step_by(EIGHT).zip(order.chunks(EIGHT)) {
-        let mut best: [Closest; EIGHT] = std::array::from_fn(|lane| tile.best(first + lane));
-        let lanes: [&Ray; EIGHT] = std::array::from_fn(|lane| &rays[targets[lane.min(targets.len() - 1)]]);
-        finish(simd, &tree.leaves, &mut best, lanes);
-        for (mut best, &target) in best.into_iter().zip(targets) {
-            answers[target] = best.answer(&tree.leaves, &PreparedRay::new(&rays[target], within.clone()));
-        }
-    }
-    Outcome::Done(tile.work)
-}
-
-/// Takes the tile through the crown and all regions below that it may meet; `false` if it takes more than `most` tests.
-/// In a region where the rays make no tile they walk one by one.
-#[cold]
-#[inline(never)]
-fn travel<S: Simd>(
-    simd: S,
-    tree: &Bvh,
-    crown: &Crown,
-    (tile, stack): (&mut Tile, &mut [Pending]),
-    (rays, order): (&[Ray], &[usize]),
-    within: &Range<f64>,
-    most: u32,
-) -> bool {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let Some(line) = tile.line(within) else { return false };
-            if !crown.is_met(&line) {
-                return true;
-            }
-            let mut tour = Tour::new(crown, line);
-            let visits = &mut Visits::default();
-            while let Some(part) = tour.next(simd, crown, false, tile.limit(), visits) {
-                tile.work += 1;
-                match part {
-                    Part::Region(index) => {
-                        let region = &tree.regions[index as usize];
-                        if !tile.enter(simd, &region.frame, within.end) {
-                            one_by_one(simd, tree, region, tile, (rays, order), within);
-                        } else if !walk(simd, tree, region, (tile, stack), (rays, order), within, most) {
-                            return false;
-                        }
-                    }
-                    Part::Sphere(place) => {
-                        offer::<S, Sphere>(simd, place as usize, u64::MAX, tile, tree, (rays, order), within);
-                    }
-                    Part::Triangle(place) => {
-                        offer::<S, Triangle>(simd, place as usize, u64::MAX, tile, tree, (rays, order), within);
-                    }
-                    Part::Node(_) => unreachable!("a tour goes through nodes"),
-                }
-                if tile.work > most {
-                    return false;
-                }
-            }
-            true
-        },
-    )
-}
-
-/// Takes the rays through a region one by one.
-#[cold]
-#[inline(never)]
-fn one_by_one<S: Simd>(
-    simd: S,
-    tree: &Bvh,
-    region: &Region,
-    tile: &mut Tile,
-    (rays, order): (&[Ray], &[usize]),
-    within: &Range<f64>,
-) {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let visits = &mut Visits::default();
-            for (lane, &ray) in order.iter().enumerate() {
-                let mut best = tile.best(lane);
-                visit(simd, tree, region, &PreparedRay::new(&rays[ray], within.clone()), &mut best, visits);
-                tile.keep(lane, &best);
-            }
-            tile.work = tile.work.saturating_add(u32::try_from(visits.nodes).unwrap_or(u32::MAX));
-        },
-    );
-}
-
-/// Takes the tile through a region; `false` if it takes more than `most` tests.
-#[inline(always)]
-fn walk<S: Simd>(
-    simd: S,
-    tree: &Bvh,
-    region: &Region,
-    (tile, stack): (&mut Tile, &mut [Pending]),
-    (rays, order): (&[Ray], &[usize]),
-    within: &Range<f64>,
-    most: u32,
-) -> bool {
-    let mut keys = [0; WIDTH];
-    let areas = Areas::of(tree);
-    let mut height = 0;
-    let mut at = region.root;
-    loop {
-        tile.work += 1;
-        if tile.work > most {
-            return false;
-        }
-        match at.kind() {
-            Kind::Inner => {
-                let node = &tree.nodes[at.index()];
-                let (enter, leave) = slabs(simd, &node.boxes, tile.near, tile.far, (0.0, tile.last));
-                let mut met = bits(enter.simd_le(leave).to_bitmask());
-                // (Minus zero plus zero is zero.)
-                let key: u32x16<S> = (enter + 0.0).bitcast();
-                key.store_slice(&mut keys);
-                if met != 0 {
-                    let nearest = nearest(
-                        #[inline(always)]
-                        || {
-                            let lane = met.trailing_zeros() as usize;
-                            met &= met - 1;
-                            areas.prefetch(node.children[lane]);
-                            (pending(&keys, &node.children, lane), met == 0)
-                        },
-                        stack,
-                        &mut height,
-                    );
-                    at = child(nearest);
-                    continue;
-                }
-            }
-            Kind::Spheres => {
-                prefetch_lines(tree.leaves.spheres.as_ptr().wrapping_add(at.index() * WIDTH), 8);
-                block::<S, Balls>(simd, &tree.sphere_blocks, at.index(), tile, tree, (rays, order), within);
-            }
-            Kind::Triangles => {
-                prefetch_lines(tree.leaves.triangles.as_ptr().wrapping_add(at.index() * WIDTH), 18);
-                block::<S, Boxes>(simd, &tree.triangle_blocks, at.index(), tile, tree, (rays, order), within);
-            }
-        }
-        let last = tile.last.to_bits();
-        loop {
-            if height == 0 {
-                return true;
-            }
-            height -= 1;
-            if (stack[height] >> 32) as u32 <= last {
-                at = child(stack[height]);
-                break;
-            }
-        }
-    }
-}
-
-impl Tile {
-    /// The best hit of a ray so far.
-    #[inline(always)]
-    fn best(&self, lane: usize) -> Closest {
-        Closest { bounds: Candidate { low: self.low[lane], high: self.high[lane] }, place: self.place[lane] }
-    }
-
-    #[inline(always)]
-    fn keep(&mut self, lane: usize, best: &Closest) {
-        (self.low[lane], self.high[lane], self.place[lane]) = (best.bounds.low, best.bounds.high, best.place);
-    }
-}
-
-/// Takes the tile through a leaf block.
-#[inline(always)]
-fn block<S: Simd, B: TileBlock>(
-    simd: S,
-    blocks: &[B],
-    index: usize,
-    tile: &mut Tile,
-    tree: &Bvh,
-    (rays, order): (&[Ray], &[usize]),
-    within: &Range<f64>,
-) {
-    let block = &blocks[index];
-    let mut met = block.meet_tile(simd, tile);
-    let mut changed = 0;
-    while met != 0 {
-        let lane = met.trailing_zeros() as usize;
-        met &= met - 1;
-        tile.work += 1;
-        let near = block.near(simd, tile, lane);
-        if near != 0 {
-            changed |= offer::<S, B::Leaf>(simd, WIDTH * index + lane, near, tile, tree, (rays, order), within);
-        }
-    }
-    if changed != 0 {
-        for group in 0..tile.groups() {
-            if changed >> (WIDTH * group) & 0xffff != 0 {
-                tile.shorten(simd, group, within.end);
-            }
-        }
-        tile.find_last(simd);
-    }
-}
-
-/// Offers a primitive to the rays given as bits, and returns those with a better hit now.
-#[inline(always)]
-fn offer<S: Simd, L: Blocked>(
-    simd: S,
-    place: usize,
-    near: u64,
-    tile: &mut Tile,
-    tree: &Bvh,
-    (rays, order): (&[Ray], &[usize]),
-    within: &Range<f64>,
-) -> u64 {
-    let leaf = &L::of(&tree.leaves)[place];
-    let place = L::first_place(&tree.leaves) + place;
-    let mut changed = 0;
-    for at in (0..WIDTH * tile.groups()).step_by(EIGHT) {
-        let wanted = near >> at & 0xff;
-        if wanted == 0 {
-            continue;
-        }
-        let found = leaf.pencil_candidates(simd, &tile.lanes(simd, at), (within.start, within.end));
-        let mut open = wanted & !found.none & !found.some;
-        if wanted & found.some != 0 {
-            let (low, high) = (eight(simd, &tile.low, at), eight(simd, &tile.high, at));
-            let some = wanted & found.some;
-            let better = some & found.high.simd_lt(low).to_bitmask();
-            open |= some & !better & found.low.simd_le(high).to_bitmask();
-            if better != 0 {
-                let mask = mask64x8::from_bitmask(simd, better);
-                mask.select(found.low, low).store_slice(&mut tile.low[at..at + EIGHT]);
-                mask.select(found.high, high).store_slice(&mut tile.high[at..at + EIGHT]);
-                for (lane, best) in tile.place[at..at + EIGHT].iter_mut().enumerate() {
-                    *best = if better >> lane & 1 == 1 { place } else { *best };
-                }
-                changed |= better << at;
-            }
-        }
-        while open != 0 {
-            let lane = at + open.trailing_zeros() as usize;
-            open &= open - 1;
-            if lane < order.len() {
-                changed |= alone::<S, L>(simd, leaf, place, tile, &tree.leaves, (lane, &rays[order[lane]]), within);
-            }
-        }
-    }
-    changed
-}
-
-/// Offers a primitive to one ray, which the filter for eight has left open.
-#[cold]
-#[inline(never)]
-fn alone<S: Simd, L: Blocked>(
-    simd: S,
-    leaf: &L,
-    place: usize,
-    tile: &mut Tile,
-    leaves: &Leaves,
-    (lane, ray): (usize, &Ray),
-    within: &Range<f64>,
-) -> u64 {
-    let mut best = tile.best(lane);
-    let prepared = PreparedRay::new(ray, within.clone());
-    if has_fma(simd) {
-        simd.vectorize(
-            #[inline(always)]
-            || best.meet::<true, _>(leaf, place, leaves, &prepared),
-        );
-    } else {
-        best.meet::<false, _>(leaf, place, leaves, &prepared);
-    }
-    let changed = u64::from(best.bounds.high < tile.high[lane]) << lane;
-    tile.keep(lane, &best);
-    changed
 }
 
 #[cfg(test)]

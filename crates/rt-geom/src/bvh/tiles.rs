@@ -1,6 +1,6 @@
 //! Many rays in tiles: which of them may make one, and where tiles pay.
 //!
-//! Rays of one origin and nearly one direction walk the tree together (`tile.rs`), the others many at once (`batch.rs`).
+//! Rays of one origin and nearly one direction walk the tree together (`tile_walk.rs`), the others many at once (`batch.rs`).
 //! Tiles are found by a look at the rays alone: neighbours in the caller's order, or in the rows of a picture. How many
 //! rays are worth a tile depends on the scene; the tests that the last tiles took tell.
 
@@ -11,7 +11,8 @@ use fearless_simd::Simd;
 use super::Bvh;
 use super::batch::fly;
 use super::node::WIDTH;
-use super::tile::{Outcome, RAYS, Tile, closest};
+use super::tile::{RAYS, Tile};
+use super::tile_walk::{Outcome, closest};
 use crate::leaf::Closest;
 use crate::ray::is_open;
 use crate::{Hit, Ray};
