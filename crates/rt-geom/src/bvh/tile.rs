@@ -30,6 +30,8 @@ pub(super) const EIGHT: usize = 8;
 const SLACK: f32 = 32.0 * U;
 /// The largest parameter, the distance from the origin in cull coordinates, that a tile may have.
 const REACH: f64 = 64.0;
+/// A vector with a smaller square has no direction: squares that underflow would make it too long.
+const LEAST_NORMAL: f32 = 1.0 / (1u128 << 100) as f32;
 /// The components of a tile's directions differ by no more than this.
 const SPREAD: f32 = 0.25;
 /// How wide a tile may be at the scene's center, in spaces between primitives that are spread evenly: at four to six a
@@ -293,10 +295,11 @@ impl Tile {
         let sides =
             [right - greatest[0] * axis, least[0] * axis - right, top - greatest[1] * axis, least[1] * axis - top];
         // However the planes were found: how far rays may be outside. A normal of zero, where rays differ by rounding
-        // alone, bounds nothing; one that is NaN would bound everything.
+        // alone, bounds nothing; one that is NaN would bound everything, and one that is too long drops what is touched.
         let groups = self.groups();
         for (plane, side) in self.planes.iter_mut().zip(sides) {
-            let normal = side.normalize_or_zero();
+            let is_long = side.length_squared() >= LEAST_NORMAL;
+            let normal = if is_long { side.normalize_or_zero() } else { Vec3::ZERO };
             let mut outside = f32x16::splat(simd, 0.0);
             for along in &self.along[..groups] {
                 outside = outside.max(dot(simd, along, normal));
@@ -563,6 +566,41 @@ mod tests {
         }
         tile.surround(simd, Vec3::new(0.0, 0.0, depths[0] + depths[1]));
         (tile.planes, block.meet_tile(simd, &tile))
+    }
+
+    /// The normal of a plane around rays may be anything where they differ along themselves: here two sides of it are so
+    /// short that their squares are subnormal, and a vector of length 1.22 came of it.
+    #[test]
+    fn a_plane_is_a_unit_vector_or_none_and_a_touched_ball_is_kept() {
+        #[inline(always)]
+        fn met<S: Simd>(simd: S, block: &Balls) -> ([Plane; 5], u32) {
+            let mut tile = Tile::new(1, 0);
+            (tile.count, tile.farthest, tile.last, tile.slack) = (4, 1.0, 1.0, SLACK);
+            let one = std::f32::consts::FRAC_1_SQRT_2;
+            let lengths = [one.next_down(), one, one.next_down(), one.next_down().next_down()];
+            for lane in 0..WIDTH {
+                let length = lengths[lane.min(3)];
+                for (axis, x) in [7.717_442e-30, length, length].into_iter().enumerate() {
+                    tile.along[0][axis].0[lane] = x;
+                }
+            }
+            let middle = one + one.next_down().next_down();
+            tile.surround(simd, Vec3::new(2.0 * 7.717_442e-30, middle, middle));
+            (tile.planes, block.meet_tile(simd, &tile))
+        }
+        // Half-way along the rays, and beside them by nearly the radius.
+        let mut block = Balls::EMPTY;
+        for (lane, aside) in [0.2, -0.2].into_iter().enumerate() {
+            block.set(lane, Ball { center: [0.0, 0.35 + aside, 0.35 - aside], radius: 0.29 });
+        }
+        for level in [Level::new(), Level::baseline()] {
+            let (planes, met) = dispatch!(level, simd => met(simd, &block));
+            for plane in planes {
+                let length = plane.normal.as_dvec3().length();
+                assert!(length == 0.0 || (length - 1.0).abs() <= f64::from(5.0 * U), "{level:?} {plane:?} {length}");
+            }
+            assert_eq!(met, 3, "{level:?} {planes:?}");
+        }
     }
 
     /// Unit vectors in f32 may differ by a rounding along themselves: then there is no direction across them. Planes are
