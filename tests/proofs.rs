@@ -411,6 +411,17 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "Tile",
+        &[
+            ("SLACK", "rt-geom/src/bvh/tile.rs", "const SLACK: f32 = ", " * U;"),
+            ("REACH", "rt-geom/src/bvh/tile.rs", "const REACH: f64 = ", ";"),
+            ("END_ROUNDING", "rt-geom/src/bvh/tile.rs", "let end = end.mul_add(f32x16::splat(simd, ", " * U), end)"),
+            ("OUTSIDE", "rt-geom/src/bvh/tile.rs", "(self.slack + ", " * self.farthest * outside.reduce_max())"),
+            ("IN_FRONT", "rt-geom/src/bvh/tile.rs", "(tile.last + ", " * tile.slack)"),
+            ("LEAST_NORMAL", "rt-geom/src/bvh/tile.rs", "const LEAST_NORMAL: f32 = ", ";"),
+        ],
+    ),
+    (
         "Triangle",
         &[
             ("SHORTEST", "rt-geom/src/triangle/mod.rs", "const SHORTEST: f64 = ", ";"),

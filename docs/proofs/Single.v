@@ -137,11 +137,10 @@ Proof.
     pose proof (bpow_mag_le radix2 n N) as M. replace (mag radix2 n - 24)%Z with ((mag radix2 n - 1) + -23)%Z by ring.
     rewrite bp_add. nra.
 Qed.
-Theorem up_above : forall x, x <= up x.
+Lemma up_succ : forall x, succ radix2 fexp32 (RNs x) <= up x.
 Proof.
   intro x. unfold up. set (n := RNs x). assert (Fn : Fs n) by apply RNs_F.
-  assert (S : x <= succ radix2 fexp32 n) by (apply succ_round_ge_id; auto with typeclass_instances).
-  apply Rle_trans with (1 := S). apply RNs_above; [apply generic_format_succ; auto with typeclass_instances|].
+  apply RNs_above; [apply generic_format_succ; auto with typeclass_instances|].
   apply Rle_trans with (n + ulp radix2 fexp32 n); [apply succ_le_plus_ulp; auto with typeclass_instances|].
   apply Rplus_le_compat_l.
   assert (Fu : Fs (ulp radix2 fexp32 n)) by (apply generic_format_ulp; auto with typeclass_instances).
@@ -160,6 +159,39 @@ Proof.
   - pose proof (UNIT_holds (Rabs n * bp (-23))) as E. apply Rabs_le_inv in E. pose proof (Rabs_pos n).
     pose proof (bp_pos (-23)). rewrite (Rabs_pos_eq (Rabs n * bp (-23))) in E by nra.
     assert (bp (-150) <= bp (-149)) by (apply bp_le; lia). rewrite v_val in E. lra.
+Qed.
+Theorem up_above : forall x, x <= up x.
+Proof.
+  intro x. apply Rle_trans with (2 := up_succ x). apply succ_round_ge_id; auto with typeclass_instances.
+Qed.
+(* Of numbers that are not small it is above by a quarter of a spacing at least, and by less than five roundings. *)
+Lemma up_beyond : forall x, 1 <= x -> x + / 3 * v * x <= up x <= x + 5 * v * x.
+Proof.
+  intros x H. pose proof v_pos as V. set (n := RNs x).
+  assert (n1 : 1 <= n) by (unfold n; apply RNs_above; [replace 1 with (bp 0) by reflexivity; apply Fs_bp; lia | lra]).
+  pose proof (UNIT_holds x) as E. fold n in E. rewrite (Rabs_pos_eq x) in E by lra. apply Rabs_le_inv in E.
+  assert (T : bp (-126) <= / 1000000 * v) by (apply Rle_trans with (bp (-40 + -24)); [apply bp_le; lia|];
+    rewrite bp_add; fold UNIT; simpl (bp (-40)); lra).
+  assert (T2 : bp (-150) <= bp (-126)) by (apply bp_le; lia). pose proof (bp_pos (-126)) as T0.
+  split.
+  - apply Rle_trans with (2 := up_succ x). fold n. rewrite succ_eq_pos by lra.
+    pose proof (error_le_half_ulp_round radix2 fexp32 even x) as U.
+    change (round radix2 fexp32 (Znearest even) x) with n in U. apply Rabs_le_inv in U.
+    assert (L : v * n <= ulp radix2 fexp32 n).
+    { rewrite ulp_neq_0 by lra. unfold cexp, fexp32, FLT_exp.
+      apply Rle_trans with (bp (mag radix2 n - 24)); [|apply bp_le; lia].
+      replace (mag radix2 n - 24)%Z with (-24 + mag radix2 n)%Z by ring. rewrite bp_add. fold UNIT.
+      apply Rmult_le_compat_l; [lra|]. pose proof (bpow_mag_gt radix2 n) as M. rewrite Rabs_pos_eq in M by lra. lra. }
+    rewrite v_val in *. lra.
+  - unfold up. fold n. rewrite (Rabs_pos_eq n) by lra. assert (B : bp (-23) = 2 * v) by (rewrite v_val; simpl; lra).
+    rewrite B. pose proof (UNIT_holds (n * (2 * v))) as E2. set (m := RNs (n * (2 * v))) in *.
+    assert (N0 : 0 <= n * (2 * v)) by (apply Rmult_le_pos; lra).
+    rewrite (Rabs_pos_eq (n * (2 * v))) in E2 by assumption. apply Rabs_le_inv in E2.
+    assert (m0 : 0 <= m) by (unfold m; apply RNs_above; [apply Fs_0 | assumption]).
+    pose proof (UNIT_holds (m + bp (-126))) as E3. set (k := RNs (m + bp (-126))) in *.
+    rewrite (Rabs_pos_eq (m + bp (-126))) in E3 by lra. apply Rabs_le_inv in E3.
+    assert (k0 : 0 <= k) by (unfold k; apply RNs_above; [apply Fs_0 | lra]). pose proof (UNIT_holds (n + k)) as E4.
+    rewrite (Rabs_pos_eq (n + k)) in E4 by lra. apply Rabs_le_inv in E4. rewrite v_val in *. lra.
 Qed.
 Theorem down_below : forall x, down x <= x.
 Proof. intro x. unfold down. pose proof (up_above (- x)). lra. Qed.
