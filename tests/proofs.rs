@@ -225,6 +225,14 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "Pair",
+        &[
+            ("PAIR_ERROR", "rt-geom/src/enclosing/certify.rs", "const PAIR_ERROR: f64 = ", ";"),
+            ("NEARLY_INSIDE", "rt-geom/src/enclosing/certify.rs", "const NEARLY_INSIDE: f64 = ", ";"),
+            ("AWAY_ERROR", "rt-geom/src/enclosing/certify.rs", "REACH_ERROR + bend + ", " * (away + U * size);"),
+        ],
+    ),
+    (
         "Polygon",
         &[(
             "TURN_ERROR",

@@ -323,7 +323,8 @@ Proof.
   apply Rabs_le_inv in E.
   assert (R : (n + 3 * v) * (n + 3 * v) <= reach * reach) by (apply mul2; split; lra).
   replace ((n + 3 * v) * (n + 3 * v)) with (n * n + 6 * (v * n) + 9 * (v * v)) in R by ring.
-  assert (MM : v * (n * n) <= (1 + / 20) * (v * n)) by (replace ((1 + / 20) * (v * n)) with (v * ((1 + / 20) * n)) by ring;
+  assert (MM : v * (n * n) <= (1 + / 20) * (v * n)) by (replace ((1 + / 20) * (v * n)) with (v * ((1 + / 20) * n)) by
+    ring;
     apply Rmult_le_compat_l; [lra|]; apply Rmult_le_compat_r; lra).
   assert (T : bp (-130) <= / 1000 * (v * v)) by (unfold UNIT; rewrite bp_sq; apply Rle_trans with (bp (-10 + -48));
     [apply bp_le; lia | rewrite bp_add; pose proof (bp_pos (-48)); simpl (bp (-10)); simpl (-24 + -24)%Z; lra]).
@@ -781,8 +782,8 @@ Proof.
   unfold c in *. rewrite v_val in *. lra.
 Qed.
 (* ---- Boxes ----
-   Along an axis all directions have the sign sigma; that of the ray lies between the least and the greatest, a and b without
-   the sign. *)
+   Along an axis all directions have the sign sigma; that of the ray lies between the least and the greatest,
+   a and b without the sign. *)
 Lemma part_of_hit : forall P o x e, Rabs (P - (o + tau * x)) <= e -> o + tau * x - e <= P <= o + tau * x + e.
 Proof. intros P o x e H. apply Rabs_le_inv in H. lra. Qed.
 (* What a component that is cut moves. *)
