@@ -6,12 +6,17 @@
 # compared with stored files. The gate does not run this.
 #
 # Usage: .ci/by-hand/arm.sh [arm] [MODEL OF x86-64 ..] (default: Nehalem Haswell max arm). What is found goes to stdout,
-# and is kept in docs/other-processors.txt. Needs an x86-64 Debian with Rust; packages are installed where missing, by root.
+# and is kept in docs/other-processors.txt. Needs an x86-64 Debian with rustup; the target of Rust and the packages are
+# added where missing, the packages by root. On two cores of its own it takes half an hour or more.
+#
+# LIMITS=3 makes all limits of time three times as long, for a machine that does other work, too. Steps that passed are
+# not run again at the same commit until all have passed; they are kept in target/processors-COMMIT.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 # Minutes that each step may take; one that takes longer has failed.
-install=10 build=40 draw=10 report=45 test=20
+limits=${LIMITS:-1}
+install=$((10 * limits)) build=$((40 * limits)) draw=$((10 * limits)) report=$((45 * limits)) test=$((20 * limits))
 # Tests of these files run besides the unit tests of the three crates.
 files=(pseudo_inverse pseudo_inverse_with_tolerance ray_sphere ray_triangle inside watertight)
 
@@ -19,26 +24,28 @@ files=(pseudo_inverse pseudo_inverse_with_tolerance ray_sphere ray_triangle insi
 target=${CARGO_TARGET_DIR:-target}
 mkdir -p "$target"
 target=$(cd "$target" && pwd)
-work=$(mktemp -d "$target/processors-XXXXXX")
-trap 'rm -rf "$work"' EXIT
+commit=$(git describe --always --abbrev=12 --dirty --exclude='*')
+work=$target/processors-$commit
+case $commit in *-dirty) rm -rf "$work" ;; esac
+mkdir -p "$work"
 failed=0
 within() { # MINUTES COMMAND ..: fails after that time
     timeout --kill-after=10 "$1m" "${@:2}"
 }
 judged() { # STEP MINUTES COMMAND ..: runs it, says how it ended, and counts what failed
     local started=$SECONDS code=0
+    if [ -e "$work/$1.passed" ]; then cat "$work/$1.passed"; return; fi
     within "${@:2}" >"$work/step.log" 2>&1 || code=$?
     case $code in
-        0) echo "$1: passed, $((SECONDS - started)) s" ;;
+        0) echo "$1: passed, $((SECONDS - started)) s" | tee "$work/$1.passed" ;;
         124 | 137) echo "$1: NOT DONE after $2 minutes"; failed=$((failed + 1)) ;;
         *) echo "$1: FAILED"; failed=$((failed + 1)); tail -n 40 "$work/step.log" >&2 ;;
     esac
 }
 
-packages=(qemu-user rustc-web libstd-rust-web-dev:arm64 libc6:arm64 gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
+packages=(qemu-user gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
 if ! dpkg-query -W "${packages[@]}" >/dev/null 2>&1; then
-    [ "$(id -u)" = 0 ] || { echo "run once as root: QEMU and a compiler for Arm are to be installed" >&2; exit 1; }
-    dpkg --add-architecture arm64
+    [ "$(id -u)" = 0 ] || { echo "run once as root: QEMU and a linker for Arm are to be installed" >&2; exit 1; }
     export DEBIAN_FRONTEND=noninteractive
     within $install apt-get update -qq
     within $install apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null
@@ -62,6 +69,7 @@ fn main() {
 RUST
 
 pictures() { # FOLDER COMMAND ..: draws with this command for the program
+    rm -rf "$1"
     mkdir "$1"
     "${@:2}" all --quiet --size 320x240 --out "$1/8/"
     "${@:2}" all --quiet --size 320x240 --depth 16 --out "$1/16/"
@@ -91,8 +99,7 @@ compared() { # NAME "COMMAND BEFORE A PROGRAM" FOLDER OF PROGRAMS: draws and mea
 }
 tested() { # NAME "COMMAND BEFORE A PROGRAM" COMMAND OF CARGO ..: builds the tests, and runs each file with a limit of its own
     local what program
-    judged "$1, tests built" $build "${@:3}" --no-run -p rt-math -p rt-geom -p rt-shade --lib \
-        "${files[@]/#/--test=}"
+    within $build "${@:3}" --no-run -p rt-math -p rt-geom -p rt-shade --lib "${files[@]/#/--test=}" >"$work/step.log" 2>&1 || true
     sed -nE 's/^ *Executable (.*) \((.*)\)$/\2/p' "$work/step.log" >"$work/programs.txt"
     [ "$(wc -l <"$work/programs.txt")" = $((3 + ${#files[@]})) ] || { echo "$1: tests are MISSING"; failed=$((failed + 1)); }
     while read -r program; do
@@ -101,7 +108,7 @@ tested() { # NAME "COMMAND BEFORE A PROGRAM" COMMAND OF CARGO ..: builds the tes
     done <"$work/programs.txt"
 }
 
-echo "Other processors, by .ci/by-hand/arm.sh, $(date -u +%F), commit $(git describe --always --abbrev=12 --dirty --exclude='*')"
+echo "Other processors, by .ci/by-hand/arm.sh, $(date -u +%F), commit $commit"
 cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 echo "compared with: $cpu, $(rustc --version)"
 echo "emulated by: $(qemu-x86_64 --version | head -n 1)"
@@ -109,7 +116,7 @@ within $build cargo build --release --quiet -p figures -p report
 within 1 rustc -O "$work/sees.rs" -o "$work/sees"
 echo "here: $("$work/sees")"
 pictures "$work/here" "$target/release/figures"
-within $report "$target/release/report" --quick --out "$work/report"
+[ -e "$work/report/report.json" ] || within $report "$target/release/report" --quick --out "$work/report"
 # FMA and vectors are slow to emulate: less is measured than in a quick report, and nothing is timed twice. Since cases are
 # others than in the report, its --check tells the new errors of nearly all entries, here as there.
 sed -E '/"effort"/,/}/{s/("(rounds|timing)": )[0-9]+/\11/;s/("cases": )[0-9]+/\132/;s/("spheres": )[0-9]+/\11000/;s/("rows": )[0-9]+/\112/}' \
@@ -121,16 +128,15 @@ measured=$(grep -c ', now ' "$work/errors.txt")
 for name in "$@"; do
     echo ""
     if [ "$name" = arm ]; then
-        # Debian's compiler comes with a standard library for Arm. Without `-L`: the loader of the cross compiler and the C
-        # library of arm64 may be of different releases, and then the start of a thread never ends.
-        arm=aarch64-unknown-linux-gnu linker=aarch64-linux-gnu-gcc emulated=qemu-aarch64
-        cargo="env RUSTC=/usr/bin/rustc CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=$linker cargo"
-        echo "arm: compiled by $(/usr/bin/rustc --version)"
-        judged "arm, programs built" $build $cargo build --release --target $arm -p figures -p report
-        within 1 /usr/bin/rustc -O --target $arm -C linker=$linker "$work/sees.rs" -o "$work/sees-arm"
+        # The same compiler. All of the C library is linked in: then no loader of another release of it is asked.
+        arm=aarch64-unknown-linux-gnu emulated=qemu-aarch64 linker=aarch64-linux-gnu-gcc static="-C target-feature=+crt-static"
+        rustup target list --installed | grep -qx $arm || within $install rustup target add $arm
+        export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=$linker CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS=$static
+        within $build cargo build --release --quiet --target $arm -p figures -p report
+        within 1 rustc -O --target $arm -C linker=$linker $static "$work/sees.rs" -o "$work/sees-arm"
         echo "arm sees: $($emulated "$work/sees-arm")"
         compared arm "$emulated" "$target/$arm/release"
-        tested arm "$emulated" $cargo test --release --target $arm
+        tested arm "$emulated" cargo test --release --target $arm
     else
         emulated="qemu-x86_64 -cpu $name"
         echo "$name sees: $($emulated "$work/sees" 2>/dev/null)"
@@ -140,5 +146,6 @@ for name in "$@"; do
 done
 
 echo ""
-if [ $failed = 0 ]; then echo "passed: no byte and no error differs"; else echo "FAILED: $failed"; fi
-[ $failed = 0 ]
+[ $failed = 0 ] || { echo "FAILED: $failed"; exit 1; }
+echo "passed: no byte and no error differs"
+rm -rf "$work"

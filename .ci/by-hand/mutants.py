@@ -40,11 +40,11 @@ KERNELS = {
     "crates/rt-math/src": """reflect quadratic pseudo_inverse/fixed pseudo_inverse/integers pseudo_inverse/mod
         pseudo_inverse/regular pseudo_inverse/truncated pseudo_inverse/whole exact/ball exact/dot exact/double_double
         exact/dyadic exact/enclosure exact/error_free exact/fixed exact/radius exact/round exact/scaling exact/wide""",
-    "crates/rt-geom/src": """ray plane crossings questions leaf sphere_tree sphere/exact sphere/filter sphere/finish
-        sphere/mod triangle/exact triangle/filter triangle/finish triangle/locate triangle/mod surface/exact
-        surface/filter surface/finish surface/mod enclosing/certify enclosing/exact enclosing/extreme enclosing/mod
-        enclosing/nodes enclosing/pivot enclosing/refine enclosing/scan enclosing/tangent bvh/crown bvh/cull
-        bvh/node bvh/walk bvh/batch""",
+    "crates/rt-geom/src": """ray plane crossings questions lanes leaf sphere_tree sphere/exact sphere/filter
+        sphere/finish sphere/lanes sphere/mod triangle/exact triangle/filter triangle/finish triangle/lanes
+        triangle/locate triangle/mod surface/exact surface/filter surface/finish surface/mod enclosing/certify
+        enclosing/exact enclosing/extreme enclosing/mod enclosing/nodes enclosing/pivot enclosing/refine enclosing/scan
+        enclosing/tangent bvh/crown bvh/cull bvh/node bvh/walk bvh/batch bvh/tile bvh/tiles""",
     "crates/rt-shade/src": """arctangent double_word mapping phong phong_batch power texture certified/arctangent
         certified/mod certified/phong certified/power certified/texture""",
     "figures/src": "certify seen",
