@@ -482,6 +482,71 @@ fn constants_of_the_code_are_those_of_the_proofs() {
     }
 }
 
+/// Numbers in the midst of formulas, which a proof has as numbers, too, or `docs/numerics.md` in a lemma on paper: the
+/// file under `docs`, what stands before and behind the value there, and the same of the code.
+type Number = (&'static str, [&'static str; 2], &'static str, [&'static str; 2]);
+
+const NUMBERS: &[Number] = &[
+    ("proofs/Light.v", ["(e + ", " * u * norm1 o1"], "rt-shade/src/phong.rs", ["errors.point + ", " * U * norm(seen"]),
+    ("proofs/Light.v", ["(e + ", " * u * norm1 o1"], "rt-shade/src/phong_batch.rs", ["point_error[i] += ", " * U"]),
+    (
+        "proofs/Line.v",
+        ["RN (RN (", " + RN (RN (Rabs"],
+        "rt-geom/src/bvh/cull.rs",
+        ["error = (", " + sum(origin.abs())"],
+    ),
+    (
+        "proofs/Locate.v",
+        ["TURN_ERROR_2 := ", "."],
+        "rt-geom/src/triangle/locate.rs",
+        ["let error = ", " * (edge * edge * edge) * far + UNDERFLOW;\n    certain_signs(turns.map"],
+    ),
+    ("proofs/Points.v", ["SPHERE_NORMAL := ", "."], "rt-geom/src/surface/finish.rs", ["length(), error: ", " * U }"]),
+    ("proofs/Samples.v", ["q) + (", " * w + 3 * h"], "rt-shade/src/texture.rs", ["v_error) + (", " * width + 3.0"]),
+    ("proofs/Samples.v", ["(3 * w + ", " * h + BIL"], "rt-shade/src/texture.rs", ["(3.0 * width + ", " * height + 9"]),
+    ("proofs/SurfaceFinish.v", ["r) + ", " * (eta * sqrt"], "rt-geom/src/surface/finish.rs", ["s) + ", " * n_error"]),
+    ("proofs/SurfaceFinish.v", ["dn) + ", " * (eta * dn)"], "rt-geom/src/surface/finish.rs", ["(d) + ", " * n_error"]),
+    ("proofs/SurfaceFinish.v", ["sz + ", " * (Rabs g"], "rt-geom/src/surface/finish.rs", ["size + ", " * g.abs()"]),
+    (
+        "proofs/SurfaceSide.v",
+        ["(He : (1 - 16 * u) * (", " * (nu * w"],
+        "rt-geom/src/surface/finish.rs",
+        ["error = ", " * (normal.error"],
+    ),
+    ("numerics.md", ["`TERMS_ERROR = ", " u³`"], "rt-math/src/reflect.rs", ["TERMS_ERROR: f64 = ", " * U * U * U;"]),
+    ("numerics.md", ["`LOW_ERROR = ", " u`"], "rt-math/src/reflect.rs", ["LOW_ERROR: f64 = ", " * U;"]),
+    ("numerics.md", ["`QUOTIENT_ERROR = ", " u²`"], "rt-math/src/reflect.rs", ["QUOTIENT_ERROR: f64 = ", " * U * U;"]),
+    ("numerics.md", ["q_error = ", " u² M +"], "rt-geom/src/sphere/exact.rs", ["q_error = ", " * U * U * product"]),
+    ("numerics.md", [" u² M + ", " u² q"], "rt-geom/src/sphere/exact.rs", ["product + ", " * U * U * q.high()"]),
+    ("numerics.md", ["γ' by ", " D E/sum error"], "rt-geom/src/triangle/finish.rs", ["error = ", " * (self.crossing"]),
+    ("numerics.md", ["offset, `", "u + 2|e|"], "rt-geom/src/enclosing/certify.rs", ["total + ", " * U + 2.0 * step"]),
+    ("numerics.md", ["`16u + ", "|e|/min|v|`"], "rt-geom/src/enclosing/certify.rs", ["* U + ", " * step.length"]),
+    ("numerics.md", ["2 M G) <= ", " G/b"], "rt-geom/src/enclosing/certify.rs", ["gap * (", " / BALANCE"]),
+    ("numerics.md", ["slack times `1 + ", "u`"], "rt-geom/src/enclosing/certify.rs", ["slack * (1.0 + ", " * U)"]),
+    ("numerics.md", ["of the pull, `", "u²`"], "rt-geom/src/enclosing/refine.rs", ["round() + ", " * U * U;"]),
+    (
+        "numerics.md",
+        ["of the mean, `", "u²`"],
+        "rt-geom/src/enclosing/refine.rs",
+        ["(1.0 + 8.0 * U) + most * (", " * U * U)"],
+    ),
+    ("numerics.md", ["`|x - x*| <= ", "M` first"], "rt-geom/src/enclosing/refine.rs", [".min(", " * most)"]),
+];
+
+#[test]
+fn numbers_of_the_code_are_those_of_the_lemmas() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (lemmas, [before, after], path, [code_before, code_after]) in NUMBERS {
+        let value = |path: &Path, before, after| {
+            let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            between(&text, before, after).unwrap_or_else(|| panic!("{path:?} has not one {before:?} .. {after:?}"))
+        };
+        let stated = value(&root.join("docs").join(lemmas), before, after);
+        let coded = value(&root.join("crates").join(path), code_before, code_after);
+        assert_eq!(stated, coded, "{lemmas} on the left, {path} on the right: {code_before:?} .. {code_after:?}");
+    }
+}
+
 #[test]
 fn every_file_of_proofs_is_compared() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/proofs");
@@ -494,13 +559,13 @@ fn every_file_of_proofs_is_compared() {
     assert!(names.eq(listed), "{found:?}");
 }
 
-/// The value that stands in a text between two others, if exactly one does.
+/// The value that stands in a text between two others, if one does, or several that are equal.
 fn between(text: &str, before: &str, after: &str) -> Option<f64> {
     let mut values = text.match_indices(before).filter_map(|(at, _)| {
         let (value, _) = text[at + before.len()..].split_once(after)?;
         (value.len() < 40).then(|| evaluated(value)).flatten()
     });
-    values.next().filter(|_| values.next().is_none())
+    values.next().filter(|&value| values.all(|other| other == value))
 }
 
 /// `Definition NAME := value.` with a name in capitals.
