@@ -82,7 +82,10 @@ fn known_singular_values_are_dropped_and_the_rest_inverted() {
             if ratio[rank - 1] == ratio[rank] {
                 continue; // equal singular values go together
             }
-            let rtol = ratio[rank] + (ratio[rank - 1] - ratio[rank]) * (random.uniform() * 0.49 + 0.5);
+            // Anywhere between the two, or close to one of them.
+            let [low, high] = [ratio[rank], ratio[rank - 1]];
+            let share = if random.below(2) == 0 { 0.99 * random.share() } else { 0.98 };
+            let rtol = if random.below(4) == 0 && low > 0.0 { 1.01 * low } else { low + (high - low) * share };
             let answer = pseudo_inverse_with_tolerance(known.matrix, rtol);
             assert_eq!(answer.rank, rank, "{rtol:e} {:?}", known.matrix.to_cols_array());
             ranks[rank] += 1;

@@ -176,7 +176,7 @@ mod tests {
         let samples = (0..12).map(|i| u16::try_from(i / 3).expect("small"));
         let texture = Texture::new(2, 2, samples.collect(), 3).expect("the samples fit");
         let dust = Ball::<2>::ONE.scale(-100);
-        let around = |x: f64| Ball::from_f64(x).widen(&dust);
+        let around = |x: f64| (Ball::from_f64(x) - dust.scale(-1)).widen(&dust);
         let at =
             |u: f64, v: f64, tie: bool| nearest(&texture, &[around(u), around(v)], tie).map(|c| c[0].ends().1 * 3.0);
         for (u, v, texel) in [(0.5, 0.25, 1.0), (0.25, 0.5, 2.0), (0.5, 0.5, 3.0), (0.0, 0.25, 0.0), (1.0, 0.75, 2.0)] {
