@@ -487,6 +487,7 @@ fn constants_of_the_code_are_those_of_the_proofs() {
 type Number = (&'static str, [&'static str; 2], &'static str, [&'static str; 2]);
 
 const NUMBERS: &[Number] = &[
+    ("proofs/Candidates.v", ["CANDIDATE := ", "."], "rt-geom/src/sphere/lanes.rs", ["((error * ", ") * rays.inverse"]),
     ("proofs/Light.v", ["(e + ", " * u * norm1 o1"], "rt-shade/src/phong.rs", ["errors.point + ", " * U * norm(seen"]),
     ("proofs/Light.v", ["(e + ", " * u * norm1 o1"], "rt-shade/src/phong_batch.rs", ["point_error[i] += ", " * U"]),
     (
@@ -504,6 +505,13 @@ const NUMBERS: &[Number] = &[
     ("proofs/Points.v", ["SPHERE_NORMAL := ", "."], "rt-geom/src/surface/finish.rs", ["length(), error: ", " * U }"]),
     ("proofs/Samples.v", ["q) + (", " * w + 3 * h"], "rt-shade/src/texture.rs", ["v_error) + (", " * width + 3.0"]),
     ("proofs/Samples.v", ["(3 * w + ", " * h + BIL"], "rt-shade/src/texture.rs", ["(3.0 * width + ", " * height + 9"]),
+    (
+        "proofs/SphereStep.v",
+        ["LARGEST_SLACK := ", "."],
+        "rt-geom/src/sphere/lanes.rs",
+        ["simd_le(f64x8::splat(simd, ", "));"],
+    ),
+    ("proofs/SphereStep.v", ["SLACK_FACTOR := ", "."], "rt-geom/src/sphere/lanes.rs", ["slack * ", " * half_inverse"]),
     ("proofs/SurfaceFinish.v", ["r) + ", " * (eta * sqrt"], "rt-geom/src/surface/finish.rs", ["s) + ", " * n_error"]),
     ("proofs/SurfaceFinish.v", ["dn) + ", " * (eta * dn)"], "rt-geom/src/surface/finish.rs", ["(d) + ", " * n_error"]),
     ("proofs/SurfaceFinish.v", ["sz + ", " * (Rabs g"], "rt-geom/src/surface/finish.rs", ["size + ", " * g.abs()"]),
@@ -521,6 +529,7 @@ const NUMBERS: &[Number] = &[
     ("numerics.md", ["γ' by ", " D E/sum error"], "rt-geom/src/triangle/finish.rs", ["error = ", " * (self.crossing"]),
     ("numerics.md", ["offset, `", "u + 2|e|"], "rt-geom/src/enclosing/certify.rs", ["total + ", " * U + 2.0 * step"]),
     ("numerics.md", ["`16u + ", "|e|/min|v|`"], "rt-geom/src/enclosing/certify.rs", ["* U + ", " * step.length"]),
+    ("numerics.md", ["`L = m - ", "M|g|`"], "rt-geom/src/enclosing/certify.rs", ["mean + ", " * most * pull"]),
     ("numerics.md", ["2 M G) <= ", " G/b"], "rt-geom/src/enclosing/certify.rs", ["gap * (", " / BALANCE"]),
     ("numerics.md", ["slack times `1 + ", "u`"], "rt-geom/src/enclosing/certify.rs", ["slack * (1.0 + ", " * U)"]),
     ("numerics.md", ["of the pull, `", "u²`"], "rt-geom/src/enclosing/refine.rs", ["round() + ", " * U * U;"]),

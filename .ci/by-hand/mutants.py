@@ -11,7 +11,7 @@ Usage, from anywhere:
     .ci/by-hand/mutants.py run [--sample N --seed S]    builds, runs, and writes RESULTS, one JSON object a line; N of each kind
     .ci/by-hand/mutants.py show KEY..                   the tests that reach these mutants
     .ci/by-hand/mutants.py table                        the score of each file, and the survivors, from RESULTS
-Options: --scratch DIR (/tmp/mutants), --results FILE (SCRATCH/results.jsonl), --only TEXT (mutants whose key has it),
+Options: --scratch DIR (/tmp/mutants), --results FILE (SCRATCH/results.jsonl), --only A,B (mutants whose key has one),
 --packages A,B (whose tests are run), --of A,B (whose mutants, if others), --longest S (without tests that take longer),
 --again (those that survived or hung and no proof notices, once more). A run that was stopped goes on where it
 was. Python's standard library alone.
@@ -541,6 +541,10 @@ class Session:
         self.options, self.scratch = options, options.scratch
         self.tree = os.path.join(self.scratch, "tree")
         self.copy = Copy()
+        # With fewer mutants the copy is built far sooner.
+        meant = {mutant.number for key, mutant, _ in self.copy.changes() if self.meant(key)}
+        for edits in self.copy.edits.values():
+            edits[:] = [edit for edit in edits if edit[0] in meant]
         self.environment = dict(os.environ, CARGO_TARGET_DIR=os.path.join(self.scratch, "target"), CARGO_INCREMENTAL="1",
                                 CARGO_NET_OFFLINE="true")
 
@@ -672,7 +676,7 @@ class Session:
         """The test that holds the constants to the proofs, built alone; and a tree of sources to change."""
         folder = self.options.results + ".proofs"
         for path in self.files():
-            if path.startswith(("docs/proofs/", "crates/", "figures/src/")) and path.endswith((".v", ".rs")):
+            if path.startswith(("docs/proofs/", "docs/numerics.md", "crates/", "figures/src/")) and path.endswith((".v", ".md", ".rs")):
                 target = os.path.join(folder, path)
                 os.makedirs(os.path.dirname(target), exist_ok=True)
                 shutil.copy(os.path.join(ROOT, path), target)
@@ -712,7 +716,7 @@ class Session:
         ours = tuple(f"crates/{p}/" if p.startswith("rt-") else f"{p}/" for p in self.options.of or self.options.packages)
         # The constants and the rungs first; each kind in an order of chance, so that what is done of it is a sample.
         chance = lambda x: random.Random(f"{self.options.seed} {x[0]}").random()
-        todo = sorted((x for x in self.copy.changes() if self.options.only in x[0] and x[0].startswith(ours)), key=chance)
+        todo = sorted((x for x in self.copy.changes() if self.meant(x[0]) and x[0].startswith(ours)), key=chance)
         groups = [[x for x in todo if x[1].kind == kind][:self.options.sample]
                   for kind in ("constant", "rung", "comparison", "condition", "literal")]
         todo = [x for group in groups for x in group]
@@ -752,6 +756,9 @@ class Session:
                 file.write(json.dumps(entry) + "\n")
             if result != "killed":
                 print(f"{count}/{len(todo)} {time.time() - start:.0f} s {result} {'(proof) ' if entry['proof'] else ''}{key}: {mutant.what}", flush=True)
+
+    def meant(self, key):
+        return any(text in key for text in self.options.only)
 
     def show(self, keys):
         names = os.path.join(self.scratch, "tests.json")
@@ -806,7 +813,7 @@ def main():
     parser.add_argument("keys", nargs="*")
     parser.add_argument("--scratch", default="/tmp/mutants")
     parser.add_argument("--results")
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", type=lambda s: s.split(","), default=[""])
     parser.add_argument("--packages", type=lambda s: s.split(","), default=PACKAGES)
     parser.add_argument("--of", type=lambda s: s.split(","))
     parser.add_argument("--sample", type=int)
@@ -819,7 +826,7 @@ def main():
     if options.command == "list":
         counts = collections.Counter()
         for key, mutant, _ in Copy().changes():
-            if options.only in key:
+            if any(text in key for text in options.only):
                 counts[mutant.file, mutant.kind] += 1
         for (file, kind), count in sorted(counts.items()):
             print(f"{count:5} {kind:10} {file}")
