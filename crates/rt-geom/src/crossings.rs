@@ -262,3 +262,19 @@ fn of_root(near: bool, outside: Ordering, beyond: Ordering) -> Ordering {
         (Ordering::Equal, _) => Ordering::Equal,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::of_root;
+
+    #[test]
+    fn a_root_lies_where_numbers_say() {
+        let (near, far, middle) = (1, 5, 3i32);
+        for place in 0i32..7 {
+            let outside = (place - middle).abs().cmp(&(far - middle));
+            for (is_near, root) in [(true, near), (false, far)] {
+                assert_eq!(of_root(is_near, outside, place.cmp(&middle)), root.cmp(&place), "{root} and {place}");
+            }
+        }
+    }
+}

@@ -301,8 +301,9 @@ fn a_ray_that_starts_on_the_surface_has_the_root_zero_and_leaves() {
 fn normals_and_hit_points_keep_their_bounds() {
     const U: f64 = f64::EPSILON / 2.0;
     let mut rng = Random::new(15);
-    for _ in 0..cases(LONG) {
-        let k = rng.integer(-1068..1020);
+    for i in 0..cases(LONG) {
+        // The largest differences overflow.
+        let k = if i % 8 == 0 { 1023 } else { rng.integer(-1068..1020) };
         let radius = scale(0.5 + rng.uniform().abs(), k);
         let center = scale_point(rng.point(), k);
         let sphere = Sphere::new(center, radius).unwrap();

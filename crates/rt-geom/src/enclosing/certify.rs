@@ -472,6 +472,7 @@ const NEARLY_INSIDE: f64 = power_of_two(-20);
 mod tests {
     use oracle::{Big, Random, exact, root, sub, vector};
 
+    use super::super::refine::refine;
     use super::*;
 
     /// How far a sphere reaches from a point: a square root of 400 bits.
@@ -492,7 +493,8 @@ mod tests {
             let reach = if from_a > from_b { from_a } else { from_b };
             assert!(exact(bracket.high) >= reach && exact(bracket.low.next_down()) < reach, "{a:?} {b:?} {bracket:?}");
             let minimum = (reach_of(a.center(), &b) + exact(a.radius())) / Big::from(2);
-            assert!(exact(bound) <= minimum, "{a:?} {b:?}: {bound} is no lower bound");
+            let (_, _, cold) = refine(&[a, b], &[0]);
+            assert!(exact(bound.max(cold)) <= minimum, "{a:?} {b:?}: {bound} or {cold} is no lower bound");
             sharp += usize::from(exact(bound.next_up().next_up()) > minimum);
         }
         assert!(sharp > 3_000, "{sharp}");
@@ -512,6 +514,20 @@ mod tests {
             let radius = bracket.settle(&spheres);
             assert!(bracket.low <= radius && radius <= bracket.high, "{bracket:?} {radius}");
             assert!(exact(radius) >= most && exact(radius.next_down()) < most, "{spheres:?} {radius}");
+        }
+    }
+
+    #[test]
+    fn a_reach_above_a_double_by_less_than_double_double_knows_is_enclosed() {
+        let random = &mut Random::new(5);
+        for _ in 0..100 {
+            let (x, more) = (1.0 + random.share(), random.power(-120..-104));
+            let sphere = Sphere::new(x * DVec3::X, 0.0).unwrap();
+            let mut bracket = Bracket { center: -more * DVec3::X, low: 0.0, high: 0.0 };
+            let mut lanes = bracket;
+            bracket.enclose_all(&[sphere], f64::INFINITY);
+            lanes.enclose(crate::simd::baseline(), [&sphere; 4]);
+            assert_eq!([bracket.high, lanes.high], [x.next_up(); 2], "{x} and {more:e} more");
         }
     }
 }
