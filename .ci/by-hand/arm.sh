@@ -7,7 +7,7 @@
 #
 # Usage: .ci/by-hand/arm.sh [arm] [MODEL OF x86-64 ..] (default: Nehalem Haswell max arm). What is found goes to stdout,
 # and is kept in docs/other-processors.txt. Needs an x86-64 Debian with rustup; the target of Rust and the packages are
-# added where missing, the packages by root. On two cores of its own it takes half an hour or more.
+# added where missing, the packages by root. On two cores of its own it takes an hour or more.
 #
 # LIMITS=3 makes all limits of time three times as long, for a machine that does other work, too. Steps that passed are
 # not run again at the same commit until all have passed; they are kept in target/processors-COMMIT.
