@@ -1,6 +1,6 @@
 //! The fast tree: sixteen children a node, boxes above blocks of balls, culled in f32 sixteen at a time.
 //!
-//! `build.rs` makes it, `node.rs` says how it lies in memory, `walk.rs` takes one ray through it and `batch.rs` many;
+//! `build` makes it, `node.rs` says how it lies in memory, `walk.rs` takes one ray through it and `batch.rs` many;
 //! `tiles.rs` finds rays of one origin that `tile_walk.rs` takes through it together, with the cull of `tile.rs`.
 //! Where sizes are too far apart for one frame, `groups.rs` parts them, and `crown.rs` stands above the parts.
 //! The cull (`cull.rs`) may keep too much and never drops a hit; the exact kernels of the primitives decide.
@@ -11,7 +11,6 @@ mod crown;
 mod cull;
 mod groups;
 mod node;
-mod rank;
 mod tile;
 mod tile_walk;
 mod tiles;

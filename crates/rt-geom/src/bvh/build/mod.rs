@@ -1,0 +1,148 @@
+//! Builds the tree: a binary tree by binned surface area, then collapsed to sixteen children a node.
+//!
+//! 1. Each primitive becomes a box in cull coordinates.
+//! 2. Top down, a range of boxes is cut where the estimated cost is least: the surface of each side times the number
+//!    of leaf blocks it fills (I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007). Cuts
+//!    lie at multiples of sixteen, so every leaf block but the last is full, and leaf block `k` holds exactly the
+//!    primitives `16 k ..` of the leaf order: no index is stored for it. Long ranges are cut between bins, short ones
+//!    after sorting.
+//! 3. Where no cut can part the centers, of equal primitives only the one of the lowest index is kept: the others, its
+//!    *twins*, come last in the range, and no node or leaf block has a bound for them.
+//! 4. A node takes in the largest of its children until it has sixteen.
+//!
+//! The two sides of a cut are built in parallel. Where things lie depends on the counts alone, never on the order in
+//! which threads finish, so the tree is the same for any number of threads.
+
+mod binary;
+mod bins;
+mod collapse;
+mod item;
+mod rank;
+mod sweep;
+
+use rayon::prelude::*;
+
+use super::crown::Part;
+use super::node::{Block, Blocked, Child, Frame, Kind, Node, Region, WIDTH};
+use crate::leaf::Leaves;
+use crate::{Shape, Sphere, Triangle};
+pub(super) use binary::Binary;
+use binary::Branch;
+pub(super) use bins::BinCut;
+use collapse::{Collapsed, collapse};
+pub(super) use item::{Item, bounds_of};
+
+/// The tree while it grows, region after region.
+#[derive(Default)]
+pub(super) struct Trunk {
+    pub(super) nodes: Vec<Node>,
+    pub(super) regions: Vec<Region>,
+    pub(super) spheres: Rows<Sphere>,
+    pub(super) triangles: Rows<Triangle>,
+    /// The primitives that no leaf block bounds, each after the equal one that stands for it.
+    pub(super) twins: Vec<(u32, u32)>,
+    /// How many pending entries a walk can need.
+    pub(super) stack: usize,
+}
+
+/// The primitives of a kind at their places, with their leaf blocks.
+pub(super) struct Rows<L: Blocked> {
+    pub(super) leaves: Vec<L>,
+    pub(super) blocks: Vec<L::Block>,
+    /// The index of the primitive at each place.
+    pub(super) index: Vec<u32>,
+}
+
+impl<L: Blocked> Default for Rows<L> {
+    fn default() -> Self {
+        Self { leaves: Vec::new(), blocks: Vec::new(), index: Vec::new() }
+    }
+}
+
+impl Trunk {
+    /// Appends a region. `index` tells the index of a primitive from its number there, spheres first.
+    pub(super) fn grow(
+        &mut self,
+        frame: Frame,
+        (spheres, triangles): (Binary<Sphere>, Binary<Triangle>),
+        index: impl Fn(u32) -> u32,
+    ) -> Part {
+        let first = u32::try_from(spheres.leaves.len()).expect("fewer than 2^32 primitives");
+        let parts = [
+            self.plant(spheres, &frame, |rows| &mut rows.spheres, &index),
+            self.plant(triangles, &frame, |rows| &mut rows.triangles, |i| index(first + i)),
+        ];
+        let (root, stack) = match parts {
+            // An empty scene has no region.
+            [None, None] => return Part::Region(0),
+            [Some((part, _)), None] | [None, Some((part, _))] => (part.child, part.stack),
+            [Some(a), Some(b)] => {
+                let mut join = Node::EMPTY;
+                for (lane, (part, whole)) in [&a, &b].into_iter().enumerate() {
+                    join.children[lane] = part.child;
+                    join.boxes.set(lane, whole.low, whole.high);
+                }
+                self.nodes.push(join);
+                (Child::new(Kind::Inner, self.nodes.len() - 1), a.0.stack.max(b.0.stack) + 2)
+            }
+        };
+        self.stack = self.stack.max(stack);
+        self.regions.push(Region { frame, root });
+        Part::Region(u32::try_from(self.regions.len() - 1).expect("fewer regions than primitives"))
+    }
+
+    /// Appends a primitive that no region holds, and returns its place among those of its kind.
+    pub(super) fn add(&mut self, shape: Shape, index: u32) -> usize {
+        match shape {
+            Shape::Sphere(sphere) => self.spheres.add(sphere, index),
+            Shape::Triangle(triangle) => self.triangles.add(triangle, index),
+        }
+    }
+
+    /// Appends the primitives of one kind in leaf order with their leaf blocks, and the tree above them.
+    fn plant<L: Blocked>(
+        &mut self,
+        Binary { leaves, items, branches }: Binary<L>,
+        frame: &Frame,
+        rows: impl Fn(&mut Self) -> &mut Rows<L>,
+        index: impl Fn(u32) -> u32,
+    ) -> Option<(Collapsed, Branch)> {
+        let &whole = branches.first()?;
+        let block = rows(self).start_block();
+        let part = collapse(&branches, (L::KIND, block), &mut self.nodes);
+        drop(branches);
+        self.twins.extend(items.iter().filter_map(|item| Some((index(item.twin_of()?), index(item.index())))));
+        let rows = rows(self);
+        let first = rows.leaves.len();
+        rows.index.extend(items.iter().map(|item| index(item.index())));
+        rows.leaves.par_extend(items.par_iter().map(|item| leaves[item.index() as usize]));
+        let block = |(leaves, items): (&[L], &[Item])| {
+            let mut block = L::Block::EMPTY;
+            for (lane, (leaf, _)) in
+                leaves.iter().zip(items).enumerate().filter(|(_, (_, item))| item.twin_of().is_none())
+            {
+                block.bound(lane, leaf, frame);
+            }
+            block
+        };
+        rows.blocks.par_extend(rows.leaves[first..].par_chunks(WIDTH).zip(items.par_chunks(WIDTH)).map(block));
+        Some((part, whole))
+    }
+}
+
+impl<L: Blocked> Rows<L> {
+    fn add(&mut self, leaf: L, index: u32) -> usize {
+        self.leaves.push(leaf);
+        self.index.push(index);
+        self.leaves.len() - 1
+    }
+
+    /// Fills the last block up with places where nothing is, and returns the number of the next.
+    fn start_block(&mut self) -> usize {
+        if let Some(&last) = self.leaves.last() {
+            self.leaves.resize(self.leaves.len().next_multiple_of(WIDTH), last);
+            self.index.resize(self.leaves.len(), Leaves::NOTHING);
+        }
+        self.blocks.len()
+    }
+}
