@@ -43,19 +43,25 @@ pub(super) struct Box64 {
 impl Box64 {
     pub(super) const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
-    /// Contains the sphere in its interior.
-    pub(super) fn of_sphere(sphere: &Sphere) -> Self {
-        let (center, radius) = (sphere.center(), sphere.radius());
-        Self::outward(center - radius, center + radius)
+    /// Contains the spheres in its interior.
+    pub(super) fn of_spheres(spheres: &[Sphere]) -> Self {
+        let corners = |sphere: &Sphere| (sphere.center() - sphere.radius(), sphere.center() + sphere.radius());
+        Self::outward(spheres.iter().map(corners))
     }
 
-    /// Contains the triangle in its interior.
-    pub(super) fn of_triangle(triangle: &Triangle) -> Self {
-        let [a, b, c] = triangle.vertices();
-        Self::outward(a.min(b).min(c), a.max(b).max(c))
+    /// Contains the triangles in its interior.
+    pub(super) fn of_triangles(triangles: &[Triangle]) -> Self {
+        let corners = |triangle: &Triangle| {
+            let [a, b, c] = triangle.vertices();
+            (a.min(b).min(c), a.max(b).max(c))
+        };
+        Self::outward(triangles.iter().map(corners))
     }
 
-    fn outward(low: DVec3, high: DVec3) -> Self {
+    /// The box around others, given by rounded corners.
+    fn outward(corners: impl Iterator<Item = (DVec3, DVec3)>) -> Self {
+        let merge = |(low, high): (DVec3, DVec3), (a, b)| (low.min(a), high.max(b));
+        let (low, high) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), merge);
         let down = |x: f64| if x < -FARTHEST { f64::NEG_INFINITY } else { x.min(FARTHEST).next_down() };
         Self { low: low.to_array().map(down).into(), high: (-high).to_array().map(|x| -down(x)).into() }
     }
@@ -418,8 +424,8 @@ mod tests {
             };
             let triangles: Vec<Triangle> = (0..40).map(|_| flat(random)).collect();
             let mut crown = Crown::default();
-            let root =
-                crown.add((0..).zip(&triangles).map(|(i, t)| (Box64::of_triangle(t), Part::Triangle(i))).collect());
+            let root = crown
+                .add((0..).zip(&triangles).map(|(i, t)| (Box64::of_triangles(&[*t]), Part::Triangle(i))).collect());
             let crown = crown.with_root(root);
             let origin = if random.below(4) == 0 { triangles[1].vertices()[1] } else { at(random) };
             let along = random.below(40);
@@ -453,8 +459,8 @@ mod tests {
         let far = Sphere::new(DVec3::splat(1e300), 1e299).unwrap();
         let near = Sphere::new(DVec3::X, 0.5).unwrap();
         let mut crown = Crown::default();
-        let root =
-            crown.add(vec![(Box64::of_sphere(&far), Part::Sphere(0)), (Box64::of_sphere(&near), Part::Sphere(1))]);
+        let root = crown
+            .add(vec![(Box64::of_spheres(&[far]), Part::Sphere(0)), (Box64::of_spheres(&[near]), Part::Sphere(1))]);
         let crown = crown.with_root(root);
         let all = f64::NEG_INFINITY..f64::INFINITY;
         let [o, x] = [DVec3::ZERO, DVec3::X];

@@ -1,27 +1,27 @@
 //! Groups by scale: a frame resolves what is not much smaller than the scene, so what is goes to frames of its own.
 //!
-//! A group is cut up where its frame is too coarse for it: where a few small primitives lie so close together that the
-//! slack of the cull (`cull.rs`) is no longer small beside their distances. All that is large stays. The rest is cut
-//! from the top down, between bins, until the parts are small beside the group; the parts that are too fine for the
-//! frame become groups, and the others stay with the large ones. What stays is a region, or, if it is little, single
-//! primitives of the crown. A scene of one scale is one group, and has no crown.
+//! A group is cut up where its frame is too coarse for it (`crowd.rs`): where a few small primitives lie so close
+//! together that the slack of the cull (`cull.rs`) is no longer small beside their distances. All that is large stays.
+//! The rest is cut from the top down, between bins, until the parts are small beside the group; the parts that are too
+//! fine for the frame become groups, and the others stay with the large ones. What stays is a region, or, if it is
+//! little, single primitives of the crown. A scene of one scale is one group, and has no crown.
+//!
+//! Most scenes that need groups show it before there is a tree over them. Whether a tree is good enough is asked again
+//! when it is there, for crowds that are few among many.
 
-use rayon::prelude::*;
-
-use super::build::{BinCut, Binary, Item, Trunk, bounds_of};
+use super::build::{BinCut, Binary, Extent, Item, Trunk, bounds_of, items_of, part_with_bounds, partition};
+use super::crowd::{ALL, CROWD, Grid, crowded_blocks};
 use super::crown::{Box64, Crown, Part};
 use super::node::{Frame, WIDTH};
 use super::scene_sphere;
 use crate::{Shape, Sphere, Triangle};
 
-/// Distances that a frame resolves: the slack of the balls is a 32nd of it.
-const FINEST: f32 = 1.0 / (1 << 13) as f32;
-/// The extent of the largest groups within a group. (Both in units of a radius between 1/2 and 1.)
+/// The extent of the largest groups within a group. (In units of a radius between 1/2 and 1.)
 const NESTED: f32 = 1.0 / (1 << 6) as f32;
-/// So many primitives that are too close together are too many: fewer cost no more than their tests.
-const CROWD: usize = 4;
 /// No part is cut more often than this.
 const MAX_CUTS: u32 = 64;
+/// So many primitives tell where many are.
+const SAMPLE: usize = 256;
 /// Groups within groups may hold so many times the scene's primitives in all, which bounds the time to build, and some
 /// more: a small scene has all that it needs.
 const WORK: usize = 16;
@@ -32,8 +32,10 @@ const FREE_WORK: usize = 1 << 20;
 struct Group {
     spheres: Vec<Sphere>,
     triangles: Vec<Triangle>,
-    /// Their indices; `None` if they are the whole scene.
-    index: Option<Vec<u32>>,
+    /// Their indices, in ascending order for each kind.
+    indices: Vec<u32>,
+    /// Whether they are the whole scene, which needs no list of indices.
+    whole: bool,
 }
 
 impl Group {
@@ -50,31 +52,60 @@ impl Group {
     }
 
     fn index(&self, place: u32) -> u32 {
-        self.index.as_ref().map_or(place, |index| index[place as usize])
-    }
-
-    /// Those at some places.
-    fn some(&self, mut places: Vec<u32>) -> Self {
-        places.sort_unstable();
-        let mut out = Self { index: Some(places.iter().map(|&place| self.index(place)).collect()), ..Self::default() };
-        for place in places {
-            match self.shape(place) {
-                Shape::Sphere(sphere) => out.spheres.push(sphere),
-                Shape::Triangle(triangle) => out.triangles.push(triangle),
-            }
-        }
-        out
+        if self.whole { place } else { self.indices[place as usize] }
     }
 
     fn bounds(&self) -> Box64 {
-        let boxes = self.spheres.iter().map(Box64::of_sphere).chain(self.triangles.iter().map(Box64::of_triangle));
-        boxes.fold(Box64::EMPTY, Box64::merge)
+        Box64::of_spheres(&self.spheres).merge(Box64::of_triangles(&self.triangles))
     }
 
-    /// The trees over both kinds in the group's frame.
-    fn trees(&self) -> (Frame, Binary<'_, Sphere>, Binary<'_, Triangle>) {
-        let frame = Frame::around(scene_sphere(&self.spheres, &self.triangles).as_ref());
-        (frame, Binary::new(&self.spheres, &frame), Binary::new(&self.triangles, &frame))
+    fn frame(&self) -> Frame {
+        Frame::around(scene_sphere(&self.spheres, &self.triangles).as_ref())
+    }
+
+    /// The boxes of both kinds in a frame.
+    fn items(&self, frame: &Frame) -> (Vec<Item>, Vec<Item>) {
+        (items_of(&self.spheres, frame), items_of(&self.triangles, frame))
+    }
+
+    /// The trees over both kinds.
+    fn trees(&self, (spheres, triangles): (Vec<Item>, Vec<Item>)) -> (Binary<'_, Sphere>, Binary<'_, Triangle>) {
+        (Binary::new(&self.spheres, spheres), Binary::new(&self.triangles, triangles))
+    }
+
+    /// The groups that the parts make, the first of all that stays.
+    fn split(mut self, parts: &Parts) -> Vec<Self> {
+        let mut counts = vec![(0, 0); parts.count + 1];
+        let (spheres, triangles) = parts.owner.split_at(self.spheres.len());
+        for &owner in spheres {
+            counts[owner as usize].0 += 1;
+        }
+        for &owner in triangles {
+            counts[owner as usize].1 += 1;
+        }
+        let with_room = |&(spheres, triangles): &(usize, usize)| Self {
+            spheres: Vec::with_capacity(spheres),
+            triangles: Vec::with_capacity(triangles),
+            indices: Vec::new(),
+            whole: false,
+        };
+        let mut groups: Vec<Self> = counts.iter().map(with_room).collect();
+        for (&owner, &sphere) in spheres.iter().zip(&self.spheres) {
+            groups[owner as usize].spheres.push(sphere);
+        }
+        for (&owner, &triangle) in triangles.iter().zip(&self.triangles) {
+            groups[owner as usize].triangles.push(triangle);
+        }
+        // (What is copied makes room.)
+        self.spheres = Vec::new();
+        self.triangles = Vec::new();
+        for (group, &(spheres, triangles)) in groups.iter_mut().zip(&counts) {
+            group.indices.reserve_exact(spheres + triangles);
+        }
+        for (place, &owner) in (0..).zip(&parts.owner) {
+            groups[owner as usize].indices.push(self.index(place));
+        }
+        groups
     }
 }
 
@@ -84,53 +115,28 @@ enum Entry {
     Group(usize),
 }
 
+/// What is found inside of a group, with its bounds.
+type Inside = Vec<(Box64, Entry)>;
+
 /// Builds the tree, and a crown if it has more than one region.
 pub(super) fn grow(spheres: Vec<Sphere>, triangles: Vec<Triangle>) -> (Trunk, Option<Crown>) {
-    let mut trunk = Trunk::default();
-    let mut work = WORK * (spheres.len() + triangles.len()) + FREE_WORK;
-    let mut groups = vec![Group { spheres, triangles, index: None }];
-    let mut entries: Vec<Vec<(Box64, Entry)>> = Vec::new();
-    // (Their number for now: their places follow those of all regions.)
-    let mut singles: Vec<(Shape, u32)> = Vec::new();
-    while let Some(group) = groups.get_mut(entries.len()).map(std::mem::take) {
-        let nested = group.index.is_some();
+    let work = WORK * (spheres.len() + triangles.len()) + FREE_WORK;
+    let groups = vec![Group { spheres, triangles, indices: Vec::new(), whole: true }];
+    let room = (groups[0].spheres.len(), groups[0].triangles.len());
+    let trunk = Trunk { room, ..Trunk::default() };
+    let mut nursery = Nursery { trunk, groups, singles: Vec::new(), grid: Grid::default(), work };
+    let mut entries: Vec<Inside> = Vec::new();
+    let mut rests: Vec<Group> = Vec::new();
+    while let Some(group) = nursery.groups.get_mut(entries.len()).map(std::mem::take) {
         let mut inside = Vec::new();
-        let mut rest = Group::default();
-        if nested && group.len() <= WIDTH {
-            rest = group;
-        } else {
-            let (frame, spheres, triangles) = group.trees();
-            let crowded = group.len() <= work && (is_crowded(&spheres.items) || is_crowded(&triangles.items));
-            work -= group.len().min(work);
-            let parts = if crowded { Parts::new(&group, &spheres.items, &triangles.items) } else { Parts::default() };
-            if parts.groups.is_empty() && !(crowded && group.len() <= WIDTH) {
-                let bounds = if nested { group.bounds() } else { Box64::EMPTY };
-                inside.push((bounds, Entry::Part(trunk.grow(frame, (spheres, triangles), |i| group.index(i)))));
-            } else {
-                rest = group.some(parts.rest);
-                for places in parts.groups {
-                    let part = group.some(places);
-                    inside.push((part.bounds(), Entry::Group(groups.len())));
-                    groups.push(part);
-                }
-            }
-        }
-        if rest.len() > WIDTH {
-            let (frame, spheres, triangles) = rest.trees();
-            let part = trunk.grow(frame, (spheres, triangles), |i| rest.index(i));
-            inside.push((rest.bounds(), Entry::Part(part)));
-        } else {
-            for place in (0..).take(rest.len()) {
-                let (shape, number) = (rest.shape(place), place_of(singles.len()));
-                inside.push(match shape {
-                    Shape::Sphere(sphere) => (Box64::of_sphere(&sphere), Entry::Part(Part::Sphere(number))),
-                    Shape::Triangle(triangle) => (Box64::of_triangle(&triangle), Entry::Part(Part::Triangle(number))),
-                });
-                singles.push((shape, rest.index(place)));
-            }
-        }
+        rests.push(nursery.part(group, &mut inside));
         entries.push(inside);
     }
+    // (Later than all groups, which need the memory more.)
+    for (rest, inside) in rests.into_iter().zip(&mut entries) {
+        nursery.keep(&rest, inside);
+    }
+    let Nursery { mut trunk, singles, .. } = nursery;
     if let [only] = &entries[..]
         && let [(_, Entry::Part(Part::Region(_)))] = only[..]
     {
@@ -141,8 +147,87 @@ pub(super) fn grow(spheres: Vec<Sphere>, triangles: Vec<Triangle>) -> (Trunk, Op
     (trunk, Some(crown))
 }
 
+/// The groups, and what has grown from them.
+struct Nursery {
+    trunk: Trunk,
+    groups: Vec<Group>,
+    /// Primitives of the crown. (Their number for now: their places follow those of all regions.)
+    singles: Vec<(Shape, u32)>,
+    grid: Grid,
+    /// How many primitives may still be looked at.
+    work: usize,
+}
+
+impl Nursery {
+    /// Makes a region of a group, or groups of what its frame is too coarse for. Returns what is left.
+    fn part(&mut self, group: Group, inside: &mut Inside) -> Group {
+        let nested = !group.whole;
+        if nested && group.len() <= WIDTH {
+            return group;
+        }
+        let frame = group.frame();
+        let mut items = group.items(&frame);
+        let affordable = group.len() <= self.work;
+        self.work -= group.len().min(self.work);
+        let crowded = affordable && self.is_crowded(&group, &items);
+        if crowded {
+            if let Some(parts) = Parts::new(&group, items, &mut self.grid) {
+                return self.divide(group, &parts, inside);
+            }
+            items = group.items(&frame);
+        }
+        let mut trees = group.trees(items);
+        let crowds = (crowded_blocks(&trees.0.items), crowded_blocks(&trees.1.items));
+        if affordable && !crowded && self.is_crowded(&group, &crowds) {
+            if let Some(parts) = Parts::new(&group, (trees.0.items, trees.1.items), &mut self.grid) {
+                return self.divide(group, &parts, inside);
+            }
+            trees = group.trees(group.items(&frame));
+        }
+        let bounds = if nested { group.bounds() } else { Box64::EMPTY };
+        inside.push((bounds, Entry::Part(self.trunk.grow(frame, trees, |i| group.index(i)))));
+        Group::default()
+    }
+
+    /// Whether a grid shows that a group's frame is too coarse.
+    fn is_crowded(&mut self, group: &Group, (spheres, triangles): &(Vec<Item>, Vec<Item>)) -> bool {
+        self.grid.is_crowded(spheres, |a, b| group.spheres[a as usize] == group.spheres[b as usize])
+            || self.grid.is_crowded(triangles, |a, b| group.triangles[a as usize] == group.triangles[b as usize])
+    }
+
+    /// Makes groups of a group's parts, and returns what stays.
+    fn divide(&mut self, group: Group, parts: &Parts, inside: &mut Inside) -> Group {
+        let mut groups = group.split(parts).into_iter();
+        let rest = groups.next().expect("what stays comes first");
+        for part in groups {
+            inside.push((part.bounds(), Entry::Group(self.groups.len())));
+            self.groups.push(part);
+        }
+        rest
+    }
+
+    /// Makes a region of what stays in a group, or leaves it to the crown.
+    fn keep(&mut self, rest: &Group, inside: &mut Inside) {
+        if rest.len() > WIDTH {
+            let frame = rest.frame();
+            let trees = rest.trees(rest.items(&frame));
+            let part = self.trunk.grow(frame, trees, |i| rest.index(i));
+            inside.push((rest.bounds(), Entry::Part(part)));
+            return;
+        }
+        for place in (0..).take(rest.len()) {
+            let (shape, number) = (rest.shape(place), place_of(self.singles.len()));
+            inside.push(match shape {
+                Shape::Sphere(sphere) => (Box64::of_spheres(&[sphere]), Entry::Part(Part::Sphere(number))),
+                Shape::Triangle(triangle) => (Box64::of_triangles(&[triangle]), Entry::Part(Part::Triangle(number))),
+            });
+            self.singles.push((shape, rest.index(place)));
+        }
+    }
+}
+
 /// Joins the entries of all groups, of which those of a group follow it.
-fn crown(entries: Vec<Vec<(Box64, Entry)>>, place: impl Fn(u32) -> u32) -> Crown {
+fn crown(entries: Vec<Inside>, place: impl Fn(u32) -> u32) -> Crown {
     let mut crown = Crown::default();
     let mut roots = vec![Part::Node(0); entries.len()];
     for (group, inside) in entries.into_iter().enumerate().rev() {
@@ -164,91 +249,70 @@ fn place_of(count: usize) -> u32 {
     u32::try_from(count).expect("a tree holds fewer than 2^32 primitives")
 }
 
-/// Whether a leaf block holds more small primitives close together than its frame resolves.
-fn is_crowded(items: &[Item]) -> bool {
-    items.par_chunks(WIDTH).any(is_crowded_block)
-}
-
-fn is_crowded_block(block: &[Item]) -> bool {
-    let fine = |item: &&Item| item.twin_of().is_none() && item.size() < FINEST;
-    block.iter().filter(fine).count() >= CROWD
-        && block.iter().filter(fine).any(|a| {
-            let near = |b: &&Item| a.distance(b) < FINEST;
-            block.iter().filter(fine).filter(near).count() >= CROWD
-        })
-}
-
-/// The places of what stays in a group, and of the groups within it.
-#[derive(Default)]
+/// Which part of a group each of its primitives belongs to: 0 for what stays, or the number of a group within it.
 struct Parts {
-    rest: Vec<u32>,
-    groups: Vec<Vec<u32>>,
+    owner: Vec<u32>,
+    count: usize,
 }
 
 impl Parts {
-    fn new(group: &Group, spheres: &[Item], triangles: &[Item]) -> Self {
-        let first = place_of(spheres.len());
-        let triangles = triangles.iter().map(|item| item.with_index(first + item.index()));
-        let items = spheres.iter().map(|item| item.with_index(item.index())).chain(triangles);
-        let (large, mut small): (Vec<Item>, Vec<Item>) = items.partition(|item| item.size() >= NESTED);
-        let mut parts = Self::default();
-        parts.stay(&large);
-        parts.sort_out(group, &mut small, 0);
-        if let ([], [_]) = (&parts.rest[..], &parts.groups[..]) {
-            // The frame of subnormal numbers, which no other magnifies more.
-            parts.rest = parts.groups.remove(0);
+    /// The parts of a group, if there are any.
+    fn new(group: &Group, (mut items, triangles): (Vec<Item>, Vec<Item>), grid: &mut Grid) -> Option<Self> {
+        let first = place_of(items.len());
+        items.extend(triangles.iter().map(|item| item.with_index(first + item.index())));
+        let small = partition(&mut items, |item| item.size() < NESTED);
+        let mut parts = Self { owner: vec![0; group.len()], count: 0 };
+        let small = &mut items[..small];
+        parts.sort_out(group, grid, small, &bounds_of(small), 0);
+        // The frame of subnormal numbers is the one that no other magnifies more.
+        let whole = parts.count == 1 && parts.owner.iter().all(|&owner| owner == 1);
+        if whole {
+            parts = Self { owner: vec![0; group.len()], count: 0 };
         }
-        parts
-    }
-
-    fn stay(&mut self, items: &[Item]) {
-        self.rest.extend(items.iter().map(Item::index));
+        (parts.count > 0 || group.len() <= WIDTH).then_some(parts)
     }
 
     /// Sorts small primitives out. The recursion is no deeper than [`MAX_CUTS`].
-    fn sort_out(&mut self, group: &Group, items: &mut [Item], cuts: u32) {
-        let extent = bounds_of(items);
+    fn sort_out(&mut self, group: &Group, grid: &mut Grid, items: &mut [Item], extent: &Extent, cuts: u32) {
         if items.len() < CROWD || cuts == MAX_CUTS {
-            self.stay(items);
-        } else if extent.size() < NESTED {
-            if is_too_fine(group, items, cuts) {
-                self.groups.push(items.iter().map(Item::index).collect());
-            } else {
-                self.stay(items);
+            return;
+        }
+        let nested = extent.size() < NESTED;
+        // (Of more, a crowd may be missed.)
+        if (nested || items.len() <= ALL) && !grid.is_crowded(items, |a, b| group.shape(a) == group.shape(b)) {
+            return;
+        }
+        if nested {
+            self.count += 1;
+            for item in items {
+                self.owner[item.index() as usize] = place_of(self.count);
             }
-        } else if let Some((a, b)) = BinCut::new(items, &extent).part(items) {
-            self.sort_out(group, a, cuts + 1);
-            self.sort_out(group, b, cuts + 1);
-        } else {
-            self.stay(items);
+        } else if let Some((first, extents)) = part(items, extent) {
+            let (a, b) = items.split_at_mut(first);
+            for (items, extent) in [a, b].into_iter().zip(&extents) {
+                self.sort_out(group, grid, items, extent, cuts + 1);
+            }
         }
     }
 }
 
-/// Whether some of the primitives, and not all equal, are closer together than the frame resolves.
-fn is_too_fine(group: &Group, items: &mut [Item], cuts: u32) -> bool {
-    let extent = bounds_of(items);
-    if items.len() <= WIDTH || extent.size() < FINEST {
-        is_crowded_block(items) && differ(group, items)
-    } else if cuts < MAX_CUTS
-        && let Some((a, b)) = BinCut::new(items, &extent).part(items)
-    {
-        is_too_fine(group, a, cuts + 1) || is_too_fine(group, b, cuts + 1)
-    } else {
-        false
+/// Parts primitives: those of a nested extent from the others, if they are many, or else where a cut costs least.
+fn part(items: &mut [Item], extent: &Extent) -> Option<(usize, [Extent; 2])> {
+    if items.len() < SAMPLE * WIDTH {
+        return BinCut::new(items, extent).map(|cut| cut.part(items));
     }
-}
-
-/// Whether there are several different primitives.
-fn differ(group: &Group, items: &[Item]) -> bool {
-    let mut different: Vec<Shape> = Vec::new();
-    items.iter().any(|item| {
-        let shape = group.shape(item.index());
-        if !different.contains(&shape) {
-            different.push(shape);
-        }
-        different.len() == CROWD
-    })
+    let sample: Vec<Item> = items.iter().step_by(items.len() / SAMPLE).copied().collect();
+    // Where most are, their median is.
+    let center: [f32; 3] = std::array::from_fn(|axis| {
+        let mut middles: Vec<f32> = sample.iter().map(|item| item.middle(axis)).collect();
+        let half = middles.len() / 2;
+        0.5 * *middles.select_nth_unstable_by(half, f32::total_cmp).1
+    });
+    let is_near = |item: &Item| item.is_within(center, 0.49 * NESTED);
+    if sample.iter().filter(|item| is_near(item)).count() > sample.len() / 4 {
+        return Some(part_with_bounds(items, is_near));
+    }
+    BinCut::of_sample(items, extent).map(|cut| cut.part(items))
 }
 
 #[cfg(test)]

@@ -2,11 +2,13 @@
 //!
 //! `build` makes it, `node.rs` says how it lies in memory, `walk.rs` takes one ray through it and `batch.rs` many;
 //! `tiles.rs` finds rays of one origin that `tile_walk.rs` takes through it together, with the cull of `tile.rs`.
-//! Where sizes are too far apart for one frame, `groups.rs` parts them, and `crown.rs` stands above the parts.
+//! Where sizes are too far apart for one frame, which `crowd.rs` tells, `groups.rs` parts them, and `crown.rs` stands
+//! above the parts.
 //! The cull (`cull.rs`) may keep too much and never drops a hit; the exact kernels of the primitives decide.
 
 mod batch;
 mod build;
+mod crowd;
 mod crown;
 mod cull;
 mod groups;
@@ -73,7 +75,10 @@ impl Bvh {
         let count = spheres.len() + triangles.len();
         assert!(u32::try_from(count).is_ok(), "a tree holds fewer than 2^32 primitives, not {count}");
         let (trunk, crown) = groups::grow(spheres, triangles);
-        let index = [trunk.spheres.index, trunk.triangles.index].concat();
+        let trunk = trunk.finish();
+        let mut index = trunk.spheres.index;
+        index.reserve_exact(trunk.triangles.index.len());
+        index.extend(trunk.triangles.index);
         let leaves = Leaves::new(trunk.spheres.leaves, trunk.triangles.leaves, index).with_twins(trunk.twins);
         Self {
             leaves,

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use fearless_simd::{Simd, f64x4};
+use fearless_simd::{Simd, f32x8, f64x4, prelude::*};
 use glam::DVec3;
 
 use super::cull::{CullRay, four, meet_balls, meet_boxes};
@@ -75,6 +75,16 @@ pub(super) trait Block: Copy + Send {
     /// Bounds the primitive in this lane.
     fn bound(&mut self, lane: usize, leaf: &Self::Leaf, frame: &Frame);
 
+    /// The bounds of the first primitives of at most [`WIDTH`], of which `kept` tells which have one.
+    #[inline(always)]
+    fn around(leaves: &[Self::Leaf], kept: impl Fn(usize) -> bool, frame: &Frame) -> Self {
+        let mut block = Self::EMPTY;
+        for (lane, leaf) in leaves.iter().enumerate().filter(|(lane, _)| kept(*lane)) {
+            block.bound(lane, leaf, frame);
+        }
+        block
+    }
+
     /// Which primitives a ray may meet, as bits.
     fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32;
 }
@@ -85,6 +95,39 @@ impl Block for Balls {
 
     fn bound(&mut self, lane: usize, leaf: &Sphere, frame: &Frame) {
         self.set(lane, frame.ball(leaf));
+    }
+
+    /// [`Frame::ball`], step by step in all lanes.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "what it moves is added to the radius")]
+    fn around(spheres: &[Sphere], kept: impl Fn(usize) -> bool, frame: &Frame) -> Self {
+        let mut numbers = [[0.0; WIDTH]; 4];
+        for (lane, sphere) in spheres.iter().enumerate().take(WIDTH) {
+            let [x, y, z] = sphere.center().to_array();
+            for (row, number) in numbers.iter_mut().zip([x, y, z, sphere.radius()]) {
+                row[lane] = number;
+            }
+        }
+        let [centers @ .., radii] = numbers;
+        let (middle, scale) = (frame.center.to_array(), frame.scale);
+        let mut block = Self::EMPTY;
+        let mut moved = [0.0; WIDTH];
+        for axis in 0..3 {
+            for lane in 0..WIDTH {
+                let wide = (centers[axis][lane] * 0.5 - middle[axis] * 0.5) * scale * 2.0;
+                let narrow = wide as f32;
+                let error = wide - f64::from(narrow);
+                moved[lane] += error * error;
+                block.center[axis].0[lane] = narrow;
+            }
+        }
+        for lane in 0..WIDTH {
+            block.radius.0[lane] = up(radii[lane] * scale + moved[lane].sqrt() + 2.0 * COORDINATE_ERROR);
+        }
+        for lane in (0..WIDTH).filter(|&lane| lane >= spheres.len() || !kept(lane)) {
+            block.set(lane, Ball { center: [f32::NAN; 3], radius: 0.0 });
+        }
+        block
     }
 
     #[inline(always)]
@@ -117,8 +160,18 @@ pub(super) trait Blocked: Leaf {
     fn of(leaves: &Leaves) -> &[Self];
     fn first_place(leaves: &Leaves) -> usize;
 
+    /// How many are of this kind, of so many spheres and triangles.
+    fn count(all: (usize, usize)) -> usize;
+
     /// The corners of a box in cull coordinates that contains the primitive.
     fn extent(&self, frame: &Frame) -> ([f32; 3], [f32; 3]);
+
+    /// The same as low and negated high corners, the first three lanes of either half.
+    #[inline(always)]
+    fn corners<S: Simd>(&self, _simd: S, frame: &Frame) -> [f32; 8] {
+        let ([x, y, z], [a, b, c]) = self.extent(frame);
+        [x, y, z, 0.0, -a, -b, -c, 0.0]
+    }
 
     /// Some order of all primitives, in which two are equal only if every ray gets the same answer from both.
     fn order(&self, other: &Self) -> Ordering;
@@ -138,9 +191,24 @@ impl Blocked for Sphere {
         0
     }
 
+    fn count((spheres, _): (usize, usize)) -> usize {
+        spheres
+    }
+
     fn extent(&self, frame: &Frame) -> ([f32; 3], [f32; 3]) {
         let (center, radius) = (frame.point(self.center()), frame.length(self.radius()));
         outward(center - radius, center + radius)
+    }
+
+    /// [`extent`](Self::extent), step by step in all lanes.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "rounded to nearest, then outward")]
+    fn corners<S: Simd>(&self, simd: S, frame: &Frame) -> [f32; 8] {
+        let (center, radius) = (frame.lanes(simd, self.center()), frame.length(self.radius()));
+        let out = (radius - center).combine(center + radius) + COORDINATE_ERROR;
+        let out: [f64; 8] = out.into();
+        let nearest = f32x8::simd_from(simd, out.map(|x| x as f32));
+        (-(nearest + (nearest.abs() * f32::EPSILON + f32::MIN_POSITIVE))).into()
     }
 
     fn order(&self, other: &Self) -> Ordering {
@@ -161,6 +229,10 @@ impl Blocked for Triangle {
     #[inline(always)]
     fn first_place(leaves: &Leaves) -> usize {
         leaves.spheres.len()
+    }
+
+    fn count((_, triangles): (usize, usize)) -> usize {
+        triangles
     }
 
     fn extent(&self, frame: &Frame) -> ([f32; 3], [f32; 3]) {
@@ -329,4 +401,50 @@ pub(super) fn up(x: f64) -> f32 {
 #[inline(always)]
 pub(super) fn down(x: f64) -> f32 {
     -up(-x)
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::Level;
+    use oracle::Random;
+
+    use super::*;
+    use crate::simd::dispatch;
+
+    #[test]
+    fn all_corners_together_are_those_of_each() {
+        let random = &mut Random::new(6);
+        for _ in 0..10_000 {
+            let size = 2f64.powi(random.integer(-1000..1000));
+            let sphere = Sphere::new(size * random.point(), size * random.uniform().abs()).unwrap();
+            let frame = Frame::around(Some(&Sphere::new(size * random.point(), 3.0 * size).unwrap()));
+            let ([x, y, z], [a, b, c]) = sphere.extent(&frame);
+            for level in [Level::new(), Level::baseline()] {
+                let [p, q, r, _, u, v, w, _] = dispatch!(level, simd => sphere.corners(simd, &frame));
+                assert_eq!([p, q, r, -u, -v, -w], [x, y, z, a, b, c], "{level:?} {sphere:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn all_lanes_together_have_the_bounds_of_each() {
+        let random = &mut Random::new(5);
+        for _ in 0..1_000 {
+            let size = 2f64.powi(random.integer(-300..300));
+            let spheres: Vec<Sphere> = (0..1 + random.below(WIDTH))
+                .map(|_| Sphere::new(size * random.point(), size * random.uniform().abs()).unwrap())
+                .collect();
+            let frame = Frame::around(Some(&Sphere::new(size * random.point(), 3.0 * size).unwrap()));
+            let kept: Vec<bool> = spheres.iter().map(|_| random.below(4) > 0).collect();
+            let mut expected = Balls::EMPTY;
+            for (lane, sphere) in spheres.iter().enumerate().filter(|(lane, _)| kept[*lane]) {
+                expected.bound(lane, sphere, &frame);
+            }
+            for level in [Level::new(), Level::baseline()] {
+                let found = dispatch!(level, _simd => Balls::around(&spheres, |lane| kept[lane], &frame));
+                // (NaN is not equal to itself.)
+                assert_eq!(format!("{found:?}"), format!("{expected:?}"), "{level:?} {spheres:?}");
+            }
+        }
+    }
 }

@@ -2,13 +2,16 @@
 
 use std::cmp::Ordering;
 
+use fearless_simd::Level;
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::bins::{binned_cut, partition};
 use super::item::{Extent, Item, bounds_of};
 use super::rank;
-use super::sweep::sorted_cut;
+use super::sweep::sweep;
 use crate::bvh::node::{Blocked, COORDINATE_ERROR, Frame, WIDTH};
+use crate::simd::dispatch;
 
 /// The binary tree over the primitives of one kind in a frame, and these in the order of its leaves.
 pub(in crate::bvh) struct Binary<'a, L> {
@@ -17,14 +20,18 @@ pub(in crate::bvh) struct Binary<'a, L> {
     pub(super) branches: Vec<Branch>,
 }
 
+/// The boxes of primitives in a frame.
+pub(in crate::bvh) fn items_of<L: Blocked>(leaves: &[L], frame: &Frame) -> Vec<Item> {
+    let level = Level::new();
+    let item = |(place, leaf): (usize, &L)| {
+        let corners = dispatch!(level, simd => leaf.corners(simd, frame));
+        Item::new(corners, u32::try_from(place).expect("fewer than 2^32 primitives"))
+    };
+    leaves.par_iter().enumerate().map(item).collect()
+}
+
 impl<'a, L: Blocked> Binary<'a, L> {
-    pub(in crate::bvh) fn new(leaves: &'a [L], frame: &Frame) -> Self {
-        let number = |place: usize| u32::try_from(place).expect("fewer than 2^32 primitives");
-        let item = |(place, leaf): (usize, &L)| {
-            let (low, high) = leaf.extent(frame);
-            Item::new(low, high, number(place))
-        };
-        let mut items: Vec<Item> = leaves.par_iter().enumerate().map(item).collect();
+    pub(in crate::bvh) fn new(leaves: &'a [L], mut items: Vec<Item>) -> Self {
         let branches = binary_tree(&mut items, &|a, b| leaves[a as usize].order(&leaves[b as usize]));
         Self { leaves, items, branches }
     }
@@ -43,6 +50,16 @@ pub(super) struct Branch {
 impl Branch {
     const NONE: Self = Self { low: [0.0; 3], high: [0.0; 3], first: 0 };
 
+    /// The branch of a leaf block with these corners.
+    pub(super) fn around([x, y, z, _, a, b, c, _]: [f32; 8]) -> Self {
+        Self { low: [x, y, z], high: [-a, -b, -c], first: 0 }
+    }
+
+    #[cfg(test)]
+    pub(super) fn corners(&self) -> [[f32; 3]; 2] {
+        [self.low, self.high]
+    }
+
     pub(super) fn half_area(&self) -> f32 {
         let [x, y, z]: [f32; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
         x * y + y * z + z * x
@@ -54,9 +71,13 @@ const PARALLEL: usize = 4096;
 /// The binary tree is never deeper: where the best cuts would lead there, the range is halved.
 pub(super) const MAX_DEPTH: u32 = 64;
 
+/// How deep the tree over a range that is sorted can be.
+#[expect(clippy::cast_possible_truncation, reason = "a small number")]
+const MOST_BELOW: u32 = (rank::MOST / WIDTH) as u32;
+
 /// The spread of doubled centers up to which no cut parts them: boxes are wider by that alone.
 #[expect(clippy::cast_possible_truncation, reason = "a power of two")]
-const COINCIDENT: f32 = 2.0 * COORDINATE_ERROR as f32;
+pub(super) const COINCIDENT: f32 = 2.0 * COORDINATE_ERROR as f32;
 
 /// Sorts the items into leaf order and returns the binary tree over them.
 fn binary_tree(items: &mut [Item], order: Order) -> Vec<Branch> {
@@ -74,29 +95,34 @@ type Order<'a> = &'a (dyn Fn(u32, u32) -> Ordering + Sync);
 
 /// `distinct` tells that no two items are known to be equal.
 fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32, distinct: bool, order: Order) {
-    branches[0] =
-        Branch { low: extent.items.low.truncate().to_array(), high: extent.items.high.truncate().to_array(), first: 0 };
-    let spread = extent.middles.high - extent.middles.low;
-    let coincide = items.len() > 1 && spread.truncate().max_element() <= COINCIDENT;
+    branches[0] = Branch::around(extent.items);
+    let coincide = items.len() > 1 && extent.spread().into_iter().all(|spread| spread <= COINCIDENT);
     let kept = if coincide && !distinct { part_twins(items, order) } else { items.len() };
     let (items, distinct) = (&mut items[..kept], coincide);
     let leaves = items.len().div_ceil(WIDTH);
     if leaves == 1 {
         return;
     }
-    let first = cut(items, extent, depth);
+    if items.len() <= rank::MOST && depth + MOST_BELOW < MAX_DEPTH {
+        for stretch in sweep(items, branches, extent, distinct) {
+            let items = &mut items[stretch.places(kept)];
+            let extent = bounds_of(items);
+            grow(items, &mut branches[stretch.at..], &extent, depth + MOST_BELOW, false, order);
+        }
+        return;
+    }
+    let (first, [left_extent, right_extent]) = cut(items, extent, depth);
     branches[0].first = u32::try_from(first / WIDTH).expect("an index fits in 32 bits");
     let (left, right) = items.split_at_mut(first);
     let (left_branches, right_branches) = branches[1..].split_at_mut(2 * (first / WIDTH) - 1);
-    let side = |items: &mut [Item], branches: &mut [Branch]| {
-        let extent = bounds_of(items);
-        grow(items, branches, &extent, depth + 1, distinct, order);
+    let side = |items: &mut [Item], branches: &mut [Branch], extent: &Extent| {
+        grow(items, branches, extent, depth + 1, distinct, order);
     };
     if leaves * WIDTH > PARALLEL {
-        rayon::join(|| side(left, left_branches), || side(right, right_branches));
+        rayon::join(|| side(left, left_branches, &left_extent), || side(right, right_branches, &right_extent));
     } else {
-        side(left, left_branches);
-        side(right, right_branches);
+        side(left, left_branches, &left_extent);
+        side(right, right_branches, &right_extent);
     }
 }
 
@@ -106,30 +132,29 @@ fn grow(items: &mut [Item], branches: &mut [Branch], extent: &Extent, depth: u32
 fn part_twins(items: &mut [Item], order: Order) -> usize {
     let compare = |a: &Item, b: &Item| order(a.index(), b.index());
     items.par_sort_unstable_by(|a, b| compare(a, b).then(a.index().cmp(&b.index())));
-    let mut twins = 0;
     let mut first = items[0].index();
     for i in 1..items.len() {
         if compare(&items[i - 1], &items[i]).is_eq() {
-            items[i].high.w = f32::from_bits(first);
-            twins += 1;
+            items[i].set_twin_of(first);
         } else {
             first = items[i].index();
         }
     }
-    partition(items, |item| item.twin_of().is_none());
-    items.len() - twins
+    partition(items, |item| item.twin_of().is_none())
 }
 
-/// Reorders the items and returns how many belong to the first side: a multiple of [`WIDTH`], and neither side empty.
-fn cut(items: &mut [Item], extent: &Extent, depth: u32) -> usize {
+/// Reorders the items and returns how many belong to the first side, a multiple of [`WIDTH`] and neither side empty,
+/// and the bounds of both.
+fn cut(items: &mut [Item], extent: &Extent, depth: u32) -> (usize, [Extent; 2]) {
     let leaves = items.len().div_ceil(WIDTH);
-    let spread = extent.middles.high - extent.middles.low;
     let halvings = usize::BITS - (leaves - 1).leading_zeros();
-    if depth + halvings + 1 >= MAX_DEPTH {
-        let axis = spread.truncate().max_position();
-        let first = leaves / 2 * WIDTH;
-        items.select_nth_unstable_by(first, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
-        return first;
+    if depth + halvings + 1 < MAX_DEPTH {
+        return binned_cut(items, extent);
     }
-    if items.len() <= rank::MOST { sorted_cut(items, extent, spread) } else { binned_cut(items, extent) }
+    let [x, y, z] = extent.spread();
+    let axis = Vec3::new(x, y, z).max_position();
+    let first = leaves / 2 * WIDTH;
+    items.select_nth_unstable_by(first, |a, b| a.middle(axis).total_cmp(&b.middle(axis)));
+    let (head, tail) = items.split_at(first);
+    (first, [bounds_of(head), bounds_of(tail)])
 }

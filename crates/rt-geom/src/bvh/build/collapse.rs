@@ -1,7 +1,10 @@
 //! From the binary tree to nodes of sixteen children.
 
+use fearless_simd::{Level, Simd, f32x16, prelude::*};
+
 use super::binary::Branch;
 use crate::bvh::node::{Child, Kind, Node, WIDTH};
+use crate::simd::dispatch;
 
 /// A part of the collapsed tree.
 #[derive(Clone, Copy, Debug)]
@@ -22,18 +25,29 @@ pub(super) fn collapse(branches: &[Branch], (kind, block): (Kind, usize), nodes:
 
 /// For each branch and `j` the least cost of what is below it as at most `j + 1` children of one node.
 fn costs(branches: &[Branch]) -> Vec<[f32; WIDTH]> {
+    dispatch!(Level::new(), simd => costs_of(simd, branches))
+}
+
+#[inline(always)]
+fn costs_of<S: Simd>(simd: S, branches: &[Branch]) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; branches.len()];
     for (at, branch) in branches.iter().enumerate().rev() {
         if branch.first > 0 {
-            let (left, right) = (costs[at + 1], costs[at + 2 * branch.first as usize]);
-            let cost = &mut costs[at];
-            for j in 1..WIDTH {
-                cost[j] = shares(&left, &right, j).map(|(_, cost)| cost).fold(f32::INFINITY, f32::min);
+            // For all `j` at once the least of `shares`: nothing before the first cost of the right side counts.
+            let left = costs[at + 1];
+            let mut right = [f32::INFINITY; 2 * WIDTH];
+            right[WIDTH..].copy_from_slice(&costs[at + 2 * branch.first as usize]);
+            let mut least = f32x16::splat(simd, f32::INFINITY);
+            for (k, left) in left[..WIDTH - 1].iter().enumerate() {
+                let right = f32x16::from_slice(simd, &right[WIDTH - 1 - k..2 * WIDTH - 1 - k]);
+                least = least.min(right + *left);
             }
+            let mut cost: [f32; WIDTH] = least.into();
             cost[0] = branch.half_area() + cost[WIDTH - 1];
             for j in 1..WIDTH {
                 cost[j] = cost[j].min(cost[j - 1]);
             }
+            costs[at] = cost;
         }
     }
     costs

@@ -4,11 +4,11 @@
 //! 2. Top down, a range of boxes is cut where the estimated cost is least: the surface of each side times the number
 //!    of leaf blocks it fills (I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007). Cuts
 //!    lie at multiples of sixteen, so every leaf block but the last is full, and leaf block `k` holds exactly the
-//!    primitives `16 k ..` of the leaf order: no index is stored for it. Long ranges are cut between bins, short ones
-//!    after sorting.
+//!    primitives `16 k ..` of the leaf order: no index is stored for it. Long ranges are cut between bins (`bins.rs`,
+//!    the longest by a sample), short ones are sorted once and cut down to leaf blocks (`sweep.rs`).
 //! 3. Where no cut can part the centers, of equal primitives only the one of the lowest index is kept: the others, its
 //!    *twins*, come last in the range, and no node or leaf block has a bound for them.
-//! 4. A node takes in the largest of its children until it has sixteen.
+//! 4. A node takes in those of the branches below it that leave the least sum of surfaces (`collapse.rs`).
 //!
 //! The two sides of a cut are built in parallel. Where things lie depends on the counts alone, never on the order in
 //! which threads finish, so the tree is the same for any number of threads.
@@ -20,17 +20,22 @@ mod item;
 mod rank;
 mod sweep;
 
+use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::crown::Part;
 use super::node::{Block, Blocked, Child, Frame, Kind, Node, Region, WIDTH};
 use crate::leaf::Leaves;
+use crate::simd::{dispatch, prefetch_lines};
 use crate::{Shape, Sphere, Triangle};
-pub(super) use binary::Binary;
 use binary::Branch;
-pub(super) use bins::BinCut;
+pub(super) use binary::{Binary, items_of};
+pub(super) use bins::{BinCut, part_with_bounds, partition};
 use collapse::{Collapsed, collapse};
-pub(super) use item::{Item, bounds_of};
+pub(super) use item::{Extent, Item, bounds_of, shortest_sides};
+
+/// How many primitives ahead the next ones are asked for.
+const AHEAD: usize = 16;
 
 /// The tree while it grows, region after region.
 #[derive(Default)]
@@ -43,6 +48,8 @@ pub(super) struct Trunk {
     pub(super) twins: Vec<(u32, u32)>,
     /// How many pending entries a walk can need.
     pub(super) stack: usize,
+    /// How many spheres and triangles all regions have together.
+    pub(super) room: (usize, usize),
 }
 
 /// The primitives of a kind at their places, with their leaf blocks.
@@ -60,6 +67,15 @@ impl<L: Blocked> Default for Rows<L> {
 }
 
 impl Trunk {
+    /// Gives back the room that nothing needs.
+    pub(super) fn finish(mut self) -> Self {
+        self.nodes.shrink_to_fit();
+        self.regions.shrink_to_fit();
+        self.spheres.finish();
+        self.triangles.finish();
+        self
+    }
+
     /// Appends a region. `index` tells the index of a primitive from its number there, spheres first.
     pub(super) fn grow(
         &mut self,
@@ -112,25 +128,41 @@ impl Trunk {
         let part = collapse(&branches, (L::KIND, block), &mut self.nodes);
         drop(branches);
         self.twins.extend(items.iter().filter_map(|item| Some((index(item.twin_of()?), index(item.index())))));
+        let room = self.room;
         let rows = rows(self);
         let first = rows.leaves.len();
+        if first == 0 {
+            rows.make_room(L::count(room), items.len());
+        }
         rows.index.extend(items.iter().map(|item| index(item.index())));
-        rows.leaves.par_extend(items.par_iter().map(|item| leaves[item.index() as usize]));
-        let block = |(leaves, items): (&[L], &[Item])| {
-            let mut block = L::Block::EMPTY;
-            for (lane, (leaf, _)) in
-                leaves.iter().zip(items).enumerate().filter(|(_, (_, item))| item.twin_of().is_none())
-            {
-                block.bound(lane, leaf, frame);
+        let leaf = |(place, item): (usize, &Item)| {
+            if let Some(later) = items.get(place + AHEAD) {
+                prefetch_lines(&raw const leaves[later.index() as usize], 1);
             }
-            block
+            leaves[item.index() as usize]
         };
+        rows.leaves.par_extend(items.par_iter().enumerate().map(leaf));
+        let block = |(leaves, items): (&[L], &[Item])| dispatch!(Level::new(), _simd => L::Block::around(leaves, |lane| items[lane].twin_of().is_none(), frame));
         rows.blocks.par_extend(rows.leaves[first..].par_chunks(WIDTH).zip(items.par_chunks(WIDTH)).map(block));
         Some((part, whole))
     }
 }
 
 impl<L: Blocked> Rows<L> {
+    /// Makes room for all primitives, of which the first region has some. (Each region begins with a block of its own.)
+    fn make_room(&mut self, all: usize, first: usize) {
+        let room = if first < all { all + all / 32 } else { all };
+        self.leaves.reserve_exact(room);
+        self.index.reserve_exact(room);
+        self.blocks.reserve_exact(room.div_ceil(WIDTH));
+    }
+
+    fn finish(&mut self) {
+        self.leaves.shrink_to_fit();
+        self.index.shrink_to_fit();
+        self.blocks.shrink_to_fit();
+    }
+
     fn add(&mut self, leaf: L, index: u32) -> usize {
         self.leaves.push(leaf);
         self.index.push(index);
