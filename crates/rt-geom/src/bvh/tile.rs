@@ -3,9 +3,9 @@
 //!
 //! At a node the whole tile is culled at once, by the greatest and the least component of its directions along each axis.
 //! At a leaf block balls meet the four planes around the tile; what is left meets the tile's rays, sixteen at a time in
-//! f32. The walk is in `tile_walk.rs`; every ray gets the answer that it would get alone. (I. Wald et al., "Interactive Rendering with
-//! Coherent Ray Tracing", 2001; K. Boulos et al., "Packet-based Whitted and Distribution Ray Tracing", 2007, for one
-//! test of a whole packet.)
+//! f32. The walk is in `tile_walk.rs`; every ray gets the answer that it would get alone. (I. Wald et al., "Interactive
+//! Rendering with Coherent Ray Tracing", 2001; K. Boulos et al., "Packet-based Whitted and Distribution Ray Tracing",
+//! 2007, for one test of a whole packet.)
 
 use std::ops::Range;
 

@@ -91,7 +91,7 @@ fn farthest_apart<S: Simd>(simd: S, spheres: &[Sphere]) -> ([usize; 2], f64) {
     let radii = r.combine(r) + r.rotate_elements_left::<1>().combine(r.rotate_elements_left::<2>());
     let extents = (x * x + y * y + z * z).sqrt() + radii;
     let most = extents.reduce_max();
-    // (NaN, of what overflows, is equal to nothing, and out of every range.)
+    // (What overflows is infinite, and out of range.)
     let lane = extents.simd_ge(most).to_bitmask().trailing_zeros() as usize;
     (PAIRS[lane % LANES].map(|place| if place < spheres.len() { place } else { 0 }), most)
 }
@@ -107,4 +107,43 @@ fn excess(sphere: &Sphere, center: DVec3, radius: f64) -> f64 {
 #[inline(always)]
 fn is_inside(sphere: &Sphere, bracket: &Bracket) -> bool {
     excess(sphere, bracket.center, bracket.low * (1.0 - INSIDE)) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use oracle::Random;
+
+    use super::super::enclosing_sphere;
+    use super::super::exact::contains_exactly;
+    use super::*;
+
+    /// A third, and perhaps a fourth, that touches the sphere of two from inside up to a few roundings: what sticks out
+    /// by a unit in the last place is enclosed all the same, and the answer is no larger than it must be.
+    #[test]
+    fn what_touches_the_sphere_of_two_is_enclosed_exactly() {
+        let random = &mut Random::new(12);
+        let mut supports = [0; 5];
+        for round in 0..4_000 {
+            let ball = |center: DVec3, radius: f64| Sphere::new(center, radius).unwrap();
+            let [a, b] = [(); 2].map(|()| ball(random.point(), 0.2 * random.share()));
+            let Some(two) = enclosing_sphere(&[a, b]).map(|found| found.sphere) else { continue };
+            let mut touching = || {
+                let radius = two.radius() * 0.3 * random.share();
+                let off = [0.0, 1e-16, -1e-16, 3e-16, -3e-16, 1e-14, -1e-14][random.below(7)];
+                ball(two.center() + random.direction() * (two.radius() * (1.0 + off) - radius), radius)
+            };
+            let mut set = vec![a, touching(), b];
+            if round % 2 == 0 {
+                set.insert(1, touching());
+            }
+            let found = enclosing_sphere(&set).unwrap();
+            for sphere in &set {
+                assert!(contains_exactly(found.sphere.center(), found.sphere.radius(), sphere), "{set:?} {found:?}");
+            }
+            let gap = found.sphere.radius() - found.lower_bound;
+            assert!(gap <= 16.0 * U * found.sphere.radius(), "{set:?} {found:?}");
+            supports[found.support().len()] += 1;
+        }
+        assert!(supports[2] > 500 && supports[3] > 500, "{supports:?}");
+    }
 }

@@ -142,7 +142,10 @@ impl Trunk {
             leaves[item.index() as usize]
         };
         rows.leaves.par_extend(items.par_iter().enumerate().map(leaf));
-        let block = |(leaves, items): (&[L], &[Item])| dispatch!(Level::new(), _simd => L::Block::around(leaves, |lane| items[lane].twin_of().is_none(), frame));
+        let block = |(leaves, items): (&[L], &[Item])| {
+            let is_met = |lane: usize| items[lane].twin_of().is_none();
+            dispatch!(Level::new(), _simd => L::Block::around(leaves, is_met, frame))
+        };
         rows.blocks.par_extend(rows.leaves[first..].par_chunks(WIDTH).zip(items.par_chunks(WIDTH)).map(block));
         Some((part, whole))
     }
