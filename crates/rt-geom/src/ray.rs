@@ -255,7 +255,8 @@ fn holds_at_the_ends(within: &Range<f64>, t: f64) -> bool {
 /// Whether a range holds any number.
 #[inline(always)]
 pub(crate) fn is_open(within: &Range<f64>) -> bool {
-    !within.start.is_nan() && !within.end.is_nan() && within.start.total_cmp(&within.end).is_lt()
+    let Range { start, end } = within;
+    start < end || (start == end && start.total_cmp(end).is_lt())
 }
 
 /// The larger number; the second if either is NaN. One instruction, unlike `f64::max`.

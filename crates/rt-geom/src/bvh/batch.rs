@@ -266,7 +266,7 @@ fn launch<'a, S: Simd, Q: Query>(
                 return Some(list);
             }
         } else if let Some(Region { frame, root }) = only
-            && slot.line.set(simd, frame, &slot.ray)
+            && slot.line.set(simd, frame, &slot.ray, tree.has_balls())
         {
             slot.at = *root;
             slot.height = 0;
@@ -285,7 +285,7 @@ fn travel<S: Simd, Q: Query>(simd: S, slot: &mut Slot<Q>, tour: &mut Tour, tree:
         let region = next_region(simd, tour, tree, &slot.ray, &mut slot.query, &mut Visits::default())?;
         let meets = simd.vectorize(
             #[inline(always)]
-            || slot.line.set(simd, &region.frame, &slot.ray),
+            || slot.line.set(simd, &region.frame, &slot.ray, tree.has_balls()),
         );
         if meets {
             slot.line.shorten(slot.query.limit());

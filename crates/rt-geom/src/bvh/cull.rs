@@ -58,9 +58,11 @@ pub(super) struct CullRay {
 impl CullRay {
     /// Prepares the ray for parameters `t` from `start` to `end`; `false` if all of it passes by the unit ball.
     ///
+    /// Without `balls` it is ready for boxes alone.
+    ///
     /// In place, because a copy of what has just been written piece by piece waits for the writes.
     #[inline(always)]
-    pub(super) fn set<S: Simd>(&mut self, simd: S, frame: &Frame, prepared: &PreparedRay) -> bool {
+    pub(super) fn set<S: Simd>(&mut self, simd: S, frame: &Frame, prepared: &PreparedRay, balls: bool) -> bool {
         let PreparedRay { ray, start, end, mut square, inverse_square: mut inverse, .. } = *prepared;
         let origin = frame.lanes(simd, ray.origin());
         let mut along = four(simd, ray.direction());
@@ -107,10 +109,11 @@ impl CullRay {
             self.near[axis] = axis + back;
             self.far[axis] = axis + 3 - back;
         }
-        let w = Vec3::new(w[0], w[1], w[2]);
-        self.axes = across(w);
-        for (offset, axis) in self.offset.iter_mut().zip(&self.axes) {
-            *offset = axis.x * q[0] + axis.y * q[1] + axis.z * q[2];
+        if balls {
+            self.axes = across(Vec3::new(w[0], w[1], w[2]));
+            for (offset, axis) in self.offset.iter_mut().zip(&self.axes) {
+                *offset = axis.x * q[0] + axis.y * q[1] + axis.z * q[2];
+            }
         }
         self.ball_slack = BALL_SLACK + error_up;
         self.start = down(first);
@@ -289,7 +292,7 @@ mod tests {
     #[inline(always)]
     fn met<S: Simd, B: Block>(simd: S, frame: &Frame, ray: &PreparedRay, block: &B) -> u32 {
         let mut line = CullRay::EVERYTHING;
-        if line.set(simd, frame, ray) { block.meet(simd, &line) } else { 0 }
+        if line.set(simd, frame, ray, true) { block.meet(simd, &line) } else { 0 }
     }
 
     fn check<B: Block>(

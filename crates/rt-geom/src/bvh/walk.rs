@@ -20,10 +20,9 @@ use crate::{Ray, Sphere, Triangle, Visits};
 /// A part of the tree that is still to be visited: the key of its entry above its [`Child`].
 pub(super) type Pending = u64;
 
-/// Entries that stacks of the usual sizes hold; [`Bvh::stack`] tells what a tree needs. To clear more than is
-/// needed takes time.
+/// Entries of a stack with which a walk begins; [`Bvh::stack`] tells how many it can need. To clear more than that takes
+/// as long as a tenth of a ray.
 const SMALL_STACK: usize = 48;
-const STACK: usize = 128;
 
 /// With more primitives than this, what a walk reads is no longer in the cache nearby, and is asked for early.
 const CACHED: usize = 1 << 15;
@@ -152,28 +151,16 @@ pub(super) fn visit<S: Simd, Q: Query>(
     visits: &mut Visits,
 ) {
     let mut line = CullRay::EVERYTHING;
-    if !line.set(simd, &region.frame, prepared) {
+    if !line.set(simd, &region.frame, prepared, tree.has_balls()) {
         return;
     }
     if tree.crown.is_some() {
         line.shorten(query.limit());
     }
-    let (mut small, mut usual, mut large);
-    let stack = if tree.stack <= SMALL_STACK {
-        small = [0; SMALL_STACK];
-        &mut small[..]
-    } else if tree.stack <= STACK {
-        usual = [0; STACK];
-        &mut usual[..]
-    } else {
-        large = vec![0; tree.stack];
-        &mut large[..]
-    };
-    walk(simd, tree, region.root, prepared, query, &mut line, stack, visits);
+    walk(simd, tree, region.root, prepared, query, &mut line, visits);
 }
 
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "a part of `visit`, inlined into it")]
 fn walk<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
@@ -181,9 +168,10 @@ fn walk<S: Simd, Q: Query>(
     ray: &PreparedRay,
     query: &mut Q,
     line: &mut CullRay,
-    stack: &mut [Pending],
     visits: &mut Visits,
 ) {
+    let (mut small, mut large) = ([0; SMALL_STACK], Vec::new());
+    let (mut stack, mut spare) = (&mut small[..], Some(&mut large));
     let mut keys = [0; WIDTH];
     let areas = Areas::of(tree);
     let fetch = tree.is_large();
@@ -195,6 +183,11 @@ fn walk<S: Simd, Q: Query>(
             visits.nodes += 1;
             let mut met = meet_boxes(simd, opaque(line), &node.boxes, &mut keys);
             if met != 0 {
+                if height + WIDTH > stack.len()
+                    && let Some(large) = spare.take()
+                {
+                    stack = deeper(stack, large, tree.stack);
+                }
                 let nearest = nearest(
                     #[inline(always)]
                     || {
@@ -247,6 +240,15 @@ fn walk<S: Simd, Q: Query>(
             }
         }
     }
+}
+
+/// The stack with room for `depth` entries.
+#[cold]
+#[inline(never)]
+fn deeper<'a>(stack: &[Pending], large: &'a mut Vec<Pending>, depth: usize) -> &'a mut [Pending] {
+    large.extend_from_slice(stack);
+    large.resize(depth.max(stack.len()), 0);
+    large
 }
 
 /// The nearest of the children that `next` gives, each with whether it is the last; the others go on the stack,
@@ -358,5 +360,11 @@ impl Bvh {
     #[inline(always)]
     pub(super) fn is_large(&self) -> bool {
         self.len() > CACHED
+    }
+
+    /// Whether there are leaf blocks of spheres.
+    #[inline(always)]
+    pub(super) fn has_balls(&self) -> bool {
+        !self.sphere_blocks.is_empty()
     }
 }
