@@ -1,6 +1,6 @@
-//! Eight rays at once: the types that the vector kernels of the shapes share.
+//! Eight rays at once, or the coordinates of one: what the vector kernels share.
 
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 use glam::DVec3;
 
 use crate::Ray;
@@ -86,6 +86,12 @@ impl<S: Simd> RayLanes<S> {
             inverse_square: lanes(simd, rays, Ray::inverse_square),
         }
     }
+}
+
+/// A vector in the first three lanes.
+#[inline(always)]
+pub(crate) fn four<S: Simd>(simd: S, v: DVec3) -> f64x4<S> {
+    f64x4::simd_from(simd, [v.x, v.y, v.z, v.z])
 }
 
 /// A number of each of eight things.

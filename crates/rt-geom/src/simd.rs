@@ -24,7 +24,7 @@ use rt_math::exact::two_prod_with;
 macro_rules! dispatch {
     (
         $(#[$attribute:meta])*
-        $visibility:vis fn $name:ident($($argument:ident: $kind:ty),*) -> $result:ty = $kernel:ident;
+        $visibility:vis fn $name:ident($($argument:ident: $kind:ty),* $(,)?) -> $result:ty = $kernel:ident;
     ) => {
         $(#[$attribute])*
         #[inline]

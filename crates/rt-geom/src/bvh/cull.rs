@@ -13,6 +13,7 @@ use fearless_simd::{Simd, f32x4, f32x16, f64x4, mask32x16, prelude::*, u32x16};
 use glam::{DVec3, Vec3};
 
 use super::node::{Balls, Boxes, Frame, Lanes, WIDTH, down, up};
+use crate::lanes::four;
 use crate::ray::{PreparedRay, larger};
 
 /// Half the spacing of f32 numbers at 1.
@@ -157,12 +158,6 @@ impl CullRay {
     pub(super) fn last_key(&self) -> u32 {
         (self.end + KEY_SHIFT).to_bits()
     }
-}
-
-/// A vector in the first three lanes.
-#[inline(always)]
-pub(super) fn four<S: Simd>(simd: S, v: DVec3) -> f64x4<S> {
-    f64x4::simd_from(simd, [v.x, v.y, v.z, v.z])
 }
 
 /// The sum of the first three lanes.

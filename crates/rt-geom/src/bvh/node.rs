@@ -9,7 +9,8 @@ use std::cmp::Ordering;
 use fearless_simd::{Simd, f32x8, f64x4, prelude::*};
 use glam::DVec3;
 
-use super::cull::{CullRay, four, meet_balls, meet_boxes};
+use super::cull::{CullRay, meet_balls, meet_boxes};
+use crate::lanes::four;
 use crate::leaf::{Leaf, Leaves};
 use crate::{Sphere, Triangle};
 

@@ -493,6 +493,7 @@ pub(super) fn integer_weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::Fallback;
     use oracle::Random;
 
     use super::super::filter::{again, filter};
@@ -533,7 +534,8 @@ mod tests {
                 FilterVerdict::Crosses(crossing) => {
                     self.filter += 1;
                     assert_eq!(expected, Verdict::Interior, "{triangle:?} {ray:?}");
-                    let refined = Refined::new::<false>(&crossing, triangle, ray, crossing.solution());
+                    let refined =
+                        Refined::new::<false, _>(Fallback::new(), &crossing, triangle, ray, crossing.solution());
                     let rounded = match (refined.t::<false>(), refined.weights::<false>()) {
                         (Some(t), Some(weights)) => (Some(t), Some(weights)),
                         _ => again(triangle, ray),

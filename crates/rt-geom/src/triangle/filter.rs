@@ -3,13 +3,14 @@
 
 use std::ops::Range;
 
+use fearless_simd::Simd;
 use rt_math::exact::U;
-use rt_math::fma_dispatch;
 
 use super::finish::{Refined, TriangleCrossing};
 use super::{FARTHEST, Triangle, exact};
 use crate::Ray;
 use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds, larger, smaller};
+use crate::simd::dispatch;
 
 /// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to
 /// `E² (E + S)`, as `docs/numerics.md`, section 6, has them.
@@ -73,19 +74,25 @@ pub(super) fn surely_leans(triangle: &Triangle, ray: &Ray) -> bool {
     triangle.edge < FARTHEST && ray.direction().cross(c - a).dot(b - a).abs() > error
 }
 
-fma_dispatch! {
+dispatch! {
     /// Returns the correctly rounded `t` of the hit, if it is between the ends of the range.
     pub(super) fn closest(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> = closest_kernel;
 }
 
 #[inline(always)]
-pub(super) fn closest_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray, start: f64, end: f64) -> Option<f64> {
+pub(super) fn closest_kernel<const FMA: bool, S: Simd>(
+    simd: S,
+    triangle: &Triangle,
+    ray: &Ray,
+    start: f64,
+    end: f64,
+) -> Option<f64> {
     let within = start..end;
     match filter::<FMA>(triangle, ray) {
         FilterVerdict::Misses => None,
         FilterVerdict::Crosses(crossing) if crossing.is_before(start) => None,
         FilterVerdict::Crosses(crossing) => {
-            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            let refined = Refined::new::<FMA, S>(simd, &crossing, triangle, ray, crossing.solution());
             let t = refined.t::<FMA>().unwrap_or_else(|| t_again(triangle, ray));
             holds(&within, t).then_some(t)
         }
@@ -100,17 +107,17 @@ fn t_again(triangle: &Triangle, ray: &Ray) -> f64 {
     again(triangle, ray).0.unwrap_or_else(|| exact::crossing_t(triangle, ray))
 }
 
-fma_dispatch! {
+dispatch! {
     /// Returns the correctly rounded weights where the whole line meets the triangle.
     pub(super) fn weights(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> = weights_kernel;
 }
 
 #[inline(always)]
-pub(super) fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
+pub(super) fn weights_kernel<const FMA: bool, S: Simd>(simd: S, triangle: &Triangle, ray: &Ray) -> Option<[f64; 3]> {
     let weights = match filter::<FMA>(triangle, ray) {
         FilterVerdict::Misses => return None,
         FilterVerdict::Crosses(crossing) => {
-            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            let refined = Refined::new::<FMA, S>(simd, &crossing, triangle, ray, crossing.solution());
             refined.weights::<FMA>().or_else(|| again(triangle, ray).1)
         }
         FilterVerdict::Unsure => None,
@@ -118,7 +125,7 @@ pub(super) fn weights_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) ->
     weights.or_else(|| exact::exact_weights(triangle, ray))
 }
 
-fma_dispatch! {
+dispatch! {
     /// Returns both, if `t` is between the ends of the range.
     pub(super) fn closest_with_weights(
         triangle: &Triangle,
@@ -129,7 +136,8 @@ fma_dispatch! {
 }
 
 #[inline(always)]
-pub(super) fn both_kernel<const FMA: bool>(
+pub(super) fn both_kernel<const FMA: bool, S: Simd>(
+    simd: S,
     triangle: &Triangle,
     ray: &Ray,
     start: f64,
@@ -140,7 +148,7 @@ pub(super) fn both_kernel<const FMA: bool>(
         FilterVerdict::Misses => return None,
         FilterVerdict::Crosses(crossing) if crossing.is_before(start) => return None,
         FilterVerdict::Crosses(crossing) => {
-            let refined = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
+            let refined = Refined::new::<FMA, S>(simd, &crossing, triangle, ray, crossing.solution());
             match (refined.t::<FMA>(), refined.weights::<FMA>()) {
                 (Some(t), Some(weights)) => (Some(t), Some(weights)),
                 _ => again(triangle, ray),
@@ -156,20 +164,20 @@ pub(super) fn both_kernel<const FMA: bool>(
     }
 }
 
-fma_dispatch! {
+dispatch! {
     /// Two steps from the start, for a ray that is nearly parallel to the plane, if the second is likely to decide.
     #[cold]
     pub(super) fn again(triangle: &Triangle, ray: &Ray) -> (Option<f64>, Option<[f64; 3]>) = again_kernel;
 }
 
 #[inline(always)]
-fn again_kernel<const FMA: bool>(triangle: &Triangle, ray: &Ray) -> (Option<f64>, Option<[f64; 3]>) {
+fn again_kernel<const FMA: bool, S: Simd>(simd: S, triangle: &Triangle, ray: &Ray) -> (Option<f64>, Option<[f64; 3]>) {
     let FilterVerdict::Crosses(crossing) = filter::<FMA>(triangle, ray) else { return (None, None) };
     if !crossing.is_in_reach_of_two_steps(ray) {
         return (None, None);
     }
-    let first = Refined::new::<FMA>(&crossing, triangle, ray, crossing.solution());
-    let refined = Refined::new::<FMA>(&crossing, triangle, ray, first.corrected::<FMA>());
+    let first = Refined::new::<FMA, S>(simd, &crossing, triangle, ray, crossing.solution());
+    let refined = Refined::new::<FMA, S>(simd, &crossing, triangle, ray, first.corrected::<FMA>());
     // False for NaN.
     if refined.weights.iter().all(|&weight| weight >= -0.25) {
         (refined.t::<FMA>(), refined.weights::<FMA>())

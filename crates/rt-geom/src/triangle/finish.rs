@@ -11,12 +11,17 @@
 //! A rounding test then tells whether solution and correction decide the last bit. `docs/numerics.md`, section 6,
 //! proves the bounds.
 
+use std::ops::Mul;
+
+use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
-use rt_math::exact::{U, round_if_certain, two_prod, two_sum};
+use rt_math::exact::{U, round_if_certain, two_sum};
 
 use super::Triangle;
 use crate::Ray;
+use crate::lanes::four;
 use crate::ray::{cross, dot, max_abs};
+use crate::simd::two_prod;
 
 /// The error of a component of `r`, relative to the size of the coordinates, and that of solving for it, relative to
 /// `r`.
@@ -108,7 +113,8 @@ pub(super) struct Refined<'a> {
 
 impl<'a> Refined<'a> {
     #[inline(always)]
-    pub(super) fn new<const FMA: bool>(
+    pub(super) fn new<const FMA: bool, S: Simd>(
+        simd: S,
         crossing: &'a TriangleCrossing,
         triangle: &Triangle,
         ray: &'a Ray,
@@ -120,24 +126,13 @@ impl<'a> Refined<'a> {
         let (alpha, gamma_error) = two_sum(rest, -gamma);
         let missing = beta_error + gamma_error;
 
-        // r = o + t d - α a - β b - γ c - missing a, the large terms without error.
-        let (o, d) = (ray.origin(), ray.direction());
-        let component = |o: f64, d: f64, a: f64, b: f64, c: f64| {
-            let (td, td_low) = two_prod::<FMA>(t, d);
-            let (aa, aa_low) = two_prod::<FMA>(alpha, a);
-            let (bb, bb_low) = two_prod::<FMA>(beta, b);
-            let (cc, cc_low) = two_prod::<FMA>(gamma, c);
-            let (point, e1) = two_sum(o, td);
-            let (two, e2) = two_sum(bb, cc);
-            let (three, e3) = two_sum(two, aa);
-            let low = (td_low - aa_low) - (bb_low + cc_low);
-            (point - three) + (((e1 - e2) - e3) + (low - missing * a))
-        };
-        let rest = DVec3::new(
-            component(o.x, d.x, a.x, b.x, c.x),
-            component(o.y, d.y, a.y, b.y, c.y),
-            component(o.z, d.z, a.z, b.z, c.z),
-        );
+        // r = o + t d - α a - β b - γ c - missing a: the three coordinates in lanes.
+        let splat = |x| f64x4::splat(simd, x);
+        let vertices = [four(simd, a), four(simd, b), four(simd, c)];
+        let line = (four(simd, ray.origin()), four(simd, ray.direction()), splat(t));
+        let weights = [splat(alpha), splat(beta), splat(gamma)];
+        let rest = left_over::<FMA, S, _>(vertices, weights, splat(missing), line);
+        let rest = DVec3::new(rest[0], rest[1], rest[2]);
         // How much larger than their product the terms of the sum of the volumes may be.
         let positive = 1.0 / sum;
         let steepness = (ray.reach() * edge) * edge * positive;
@@ -207,10 +202,33 @@ impl<'a> Refined<'a> {
     }
 }
 
+/// Coordinates of `o + t d - α a - β b - γ c - missing a`, the large terms without error.
+#[inline(always)]
+pub(super) fn left_over<const FMA: bool, S: Simd, V>(
+    [a, b, c]: [V; 3],
+    [alpha, beta, gamma]: [V; 3],
+    missing: V,
+    (o, d, t): (V, V, V),
+) -> V
+where
+    V: SimdFloat<S, Element = f64> + Mul<f64, Output = V>,
+{
+    let (td, td_low) = two_prod::<FMA, S, _>(t, d);
+    let (aa, aa_low) = two_prod::<FMA, S, _>(alpha, a);
+    let (bb, bb_low) = two_prod::<FMA, S, _>(beta, b);
+    let (cc, cc_low) = two_prod::<FMA, S, _>(gamma, c);
+    let (point, e1) = two_sum(o, td);
+    let (two, e2) = two_sum(bb, cc);
+    let (three, e3) = two_sum(two, aa);
+    let low = (td_low - aa_low) - (bb_low + cc_low);
+    (point - three) + (((e1 - e2) - e3) + (low - missing * a))
+}
+
 #[cfg(test)]
 mod tests {
     use std::cmp::Ordering;
 
+    use fearless_simd::Fallback;
     use oracle::{Big, Random, cross, dot, exact, sign, sub, vector};
 
     use super::super::exact as integers;
@@ -220,7 +238,7 @@ mod tests {
 
     #[test]
     fn fused_and_plain_arithmetic_give_the_same_values() {
-        let rng = &mut Random::new(3);
+        let (rng, simd) = (&mut Random::new(3), Fallback::new());
         let mut hits = 0;
         for _ in 0..4000 {
             let [a, b, c] = [rng.point(), rng.point(), rng.point()];
@@ -228,12 +246,12 @@ mod tests {
             let origin = 5.0 * rng.point();
             let (triangle, ray) = (Triangle::new(a, b, c).unwrap(), Ray::new(origin, target - origin).unwrap());
             let end = f64::INFINITY;
-            let t = closest_kernel::<false>(&triangle, &ray, 0.0, end);
-            assert_eq!(t, closest_kernel::<true>(&triangle, &ray, 0.0, end));
-            let weights = weights_kernel::<false>(&triangle, &ray);
-            assert_eq!(weights, weights_kernel::<true>(&triangle, &ray));
-            let both = both_kernel::<false>(&triangle, &ray, 0.0, end);
-            assert_eq!(both, both_kernel::<true>(&triangle, &ray, 0.0, end));
+            let t = closest_kernel::<false, _>(simd, &triangle, &ray, 0.0, end);
+            assert_eq!(t, closest_kernel::<true, _>(simd, &triangle, &ray, 0.0, end));
+            let weights = weights_kernel::<false, _>(simd, &triangle, &ray);
+            assert_eq!(weights, weights_kernel::<true, _>(simd, &triangle, &ray));
+            let both = both_kernel::<false, _>(simd, &triangle, &ray, 0.0, end);
+            assert_eq!(both, both_kernel::<true, _>(simd, &triangle, &ray, 0.0, end));
             assert_eq!(both, t.zip(weights));
             hits += usize::from(t.is_some());
         }
@@ -278,7 +296,7 @@ mod tests {
             let ray = Ray::new(target - along - lean, along + lean).unwrap();
             let FilterVerdict::Crosses(crossing) = filter::<false>(&triangle, &ray) else { continue };
             hits += 1;
-            let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
+            let refined = Refined::new::<false, _>(Fallback::new(), &crossing, &triangle, &ray, crossing.solution());
             if refined.t::<false>().is_some() {
                 first += 1;
             } else if let (Some(t), Some(weights)) = again(&triangle, &ray) {
@@ -304,7 +322,7 @@ mod tests {
             let lean = 2f64.powi(-i32::try_from(i % 24).unwrap()) * rng.point();
             let ray = Ray::new(target - along - lean, along + lean).unwrap();
             let FilterVerdict::Crosses(crossing) = filter::<false>(&triangle, &ray) else { continue };
-            let refined = Refined::new::<false>(&crossing, &triangle, &ray, crossing.solution());
+            let refined = Refined::new::<false, _>(Fallback::new(), &crossing, &triangle, &ray, crossing.solution());
             hits += 1;
             let context = || format!("{triangle:?} {ray:?}");
             let below = |x: Big, bound: f64| x < exact(bound) && -x < exact(bound);

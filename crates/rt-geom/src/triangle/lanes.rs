@@ -5,11 +5,10 @@ use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use rt_math::exact::{rounded_ends, two_sum};
 
 use super::filter::ERROR;
-use super::finish::{REST_ERROR, SOLUTION_ERROR};
+use super::finish::{REST_ERROR, SOLUTION_ERROR, left_over};
 use super::{FARTHEST, Triangle};
 use crate::lanes::{LaneCandidates, PencilLanes, RayLanes, cross, dot, lanes, minus};
 use crate::ray::{cross as cross_of_one, dot as dot_of_one};
-use crate::simd::two_prod;
 
 /// What the filter finds of eight lines, each with a triangle.
 struct LaneCrossings<S: Simd> {
@@ -134,9 +133,9 @@ impl Triangle {
         let weights = [alpha, beta, gamma];
         let (o, d) = (&rays.origin, &rays.direction);
         let rest = [
-            left_over::<FMA, S>([a[0], b[0], c[0]], weights, missing, (o[0], d[0], t)),
-            left_over::<FMA, S>([a[1], b[1], c[1]], weights, missing, (o[1], d[1], t)),
-            left_over::<FMA, S>([a[2], b[2], c[2]], weights, missing, (o[2], d[2], t)),
+            left_over::<FMA, S, _>([a[0], b[0], c[0]], weights, missing, (o[0], d[0], t)),
+            left_over::<FMA, S, _>([a[1], b[1], c[1]], weights, missing, (o[1], d[1], t)),
+            left_over::<FMA, S, _>([a[2], b[2], c[2]], weights, missing, (o[2], d[2], t)),
         ];
         let steepness = (rays.reach * edge) * edge * inverse;
         let length = (rest[0].abs() + rest[1].abs()) + rest[2].abs();
@@ -156,23 +155,4 @@ fn corners<S: Simd>(simd: S, triangles: [&Triangle; 8], i: usize) -> [f64x8<S>; 
         (x[lane], y[lane], z[lane]) = (vertex.x, vertex.y, vertex.z);
     }
     [f64x8::from_slice(simd, &x), f64x8::from_slice(simd, &y), f64x8::from_slice(simd, &z)]
-}
-
-/// A coordinate of `o + t d - α a - β b - γ c - missing a`, the large terms without error.
-#[inline(always)]
-fn left_over<const FMA: bool, S: Simd>(
-    [a, b, c]: [f64x8<S>; 3],
-    [alpha, beta, gamma]: [f64x8<S>; 3],
-    missing: f64x8<S>,
-    (o, d, t): (f64x8<S>, f64x8<S>, f64x8<S>),
-) -> f64x8<S> {
-    let (td, td_low) = two_prod::<FMA, S, _>(t, d);
-    let (aa, aa_low) = two_prod::<FMA, S, _>(alpha, a);
-    let (bb, bb_low) = two_prod::<FMA, S, _>(beta, b);
-    let (cc, cc_low) = two_prod::<FMA, S, _>(gamma, c);
-    let (point, e1) = two_sum(o, td);
-    let (two, e2) = two_sum(bb, cc);
-    let (three, e3) = two_sum(two, aa);
-    let low = (td_low - aa_low) - (bb_low + cc_low);
-    (point - three) + (((e1 - e2) - e3) + (low - missing * a))
 }
