@@ -385,18 +385,22 @@ fn batches_answer_as_single_questions_do() {
     let tree = Bvh::new(list.spheres.clone(), list.triangles.clone());
     let rays: Vec<Ray> = (0..200).map(|_| Ray::new(9.0 * random.point(), random.point()).unwrap()).collect();
     let points: Vec<DVec3> = (0..200).map(|_| 5.0 * random.point()).collect();
-    let (mut hits, mut crossings) = (vec![Vec::new(); 200], vec![Vec::new(); 200]);
-    let (mut counts, mut sides) = (vec![0; 200], vec![Side::On; 200]);
-    tree.hits_batch(&rays, AHEAD, &mut hits);
-    tree.count_batch(&rays, AHEAD, &mut counts);
-    tree.crossings_batch(&rays, &mut crossings);
-    tree.contains_batch(&points, &mut sides);
-    let (mut one, mut pass) = (Vec::new(), Vec::new());
-    for (i, ray) in rays.iter().enumerate() {
-        tree.hits(ray, AHEAD, &mut one);
-        tree.crossings(ray, &mut pass);
-        assert_eq!((&hits[i], counts[i], &crossings[i]), (&one, one.len(), &pass));
-        assert_eq!(sides[i], tree.contains(points[i]));
+    // One after the other or together, as is faster here, and surely together.
+    let flying = ["avx512", "avx2", "neon", "sse2"].iter().find_map(|name| tree.clone().with_simd(name));
+    for tree in [Some(tree), flying].into_iter().flatten() {
+        let (mut hits, mut crossings) = (vec![Vec::new(); 200], vec![Vec::new(); 200]);
+        let (mut counts, mut sides) = (vec![0; 200], vec![Side::On; 200]);
+        tree.hits_batch(&rays, AHEAD, &mut hits);
+        tree.count_batch(&rays, AHEAD, &mut counts);
+        tree.crossings_batch(&rays, &mut crossings);
+        tree.contains_batch(&points, &mut sides);
+        let (mut one, mut pass) = (Vec::new(), Vec::new());
+        for (i, ray) in rays.iter().enumerate() {
+            tree.hits(ray, AHEAD, &mut one);
+            tree.crossings(ray, &mut pass);
+            assert_eq!((&hits[i], counts[i], &crossings[i]), (&one, one.len(), &pass));
+            assert_eq!(sides[i], tree.contains(points[i]));
+        }
     }
 }
 

@@ -167,6 +167,12 @@ fn rays_per_scene(scene: &Scene) -> usize {
     }
 }
 
+/// The tree with the best instruction set, by whose batches rays are on their way together.
+fn flying(tree: &Bvh) -> Bvh {
+    let sets = ["avx512", "avx2", "neon", "sse2"];
+    sets.iter().find_map(|name| tree.clone().with_simd(name)).unwrap_or_else(|| tree.clone())
+}
+
 #[test]
 fn tree_gives_the_plain_loops_hit() {
     let mut hits = 0;
@@ -177,6 +183,11 @@ fn tree_gives_the_plain_loops_hit() {
         tree.closest_batch(&rays, AHEAD, &mut batch);
         let mut batch_any = vec![false; rays.len()];
         tree.any_batch(&rays, AHEAD, &mut batch_any);
+        // On their way together, if they were not.
+        let tree = flying(&tree);
+        let mut together = vec![None; rays.len()];
+        tree.closest_batch(&rays, AHEAD, &mut together);
+        assert!(together == batch, "{}", scene.name);
         for (i, ray) in rays.iter().enumerate() {
             let expected = bits(closest_by_loop(&scene, ray, &AHEAD));
             hits += usize::from(expected.is_some());

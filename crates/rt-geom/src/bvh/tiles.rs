@@ -64,7 +64,7 @@ pub(super) fn closest_batch<S: Simd>(
     answers: &mut [Option<Hit>],
 ) {
     if !(within.start >= 0.0 && is_open(within)) {
-        fly::<S, Closest>(simd, tree, rays, None, within, answers);
+        tree.batch::<Closest>(rays, within, answers);
         return;
     }
     let mut tile = Tile::new(tree.leaves.spheres.len(), tree.leaves.triangles.len());
@@ -103,7 +103,9 @@ pub(super) fn closest_batch<S: Simd>(
             }
             judge.learn(large, (count > 0).then(|| works / count));
         }
-        if !alone.is_empty() {
+        if !tree.flies {
+            tree.one_by_one::<Closest>(rays, alone.iter().copied(), within, answers);
+        } else if !alone.is_empty() {
             fly::<S, Closest>(simd, tree, rays, Some(&alone), within, answers);
         }
     }

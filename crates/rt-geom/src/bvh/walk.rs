@@ -25,7 +25,7 @@ pub(super) type Pending = u64;
 const SMALL_STACK: usize = 48;
 
 /// With more primitives than this, what a walk reads is no longer in the cache nearby, and is asked for early.
-const CACHED: usize = 1 << 15;
+const NEARBY: usize = 1 << 15;
 
 #[inline(always)]
 pub(super) fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
@@ -359,7 +359,7 @@ impl Bvh {
     /// Whether what a walk reads is better asked for early.
     #[inline(always)]
     pub(super) fn is_large(&self) -> bool {
-        self.len() > CACHED
+        self.len() > NEARBY
     }
 
     /// Whether there are leaf blocks of spheres.
