@@ -368,3 +368,27 @@ impl Bvh {
         !self.sphere_blocks.is_empty()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use oracle::Random;
+
+    use super::*;
+    use crate::{AHEAD, Bvh};
+
+    /// Through balls that all overlap a ray meets every child, so that more is pending than a stack begins with.
+    #[test]
+    fn a_stack_grows_where_every_child_is_met() {
+        let random = &mut Random::new(4);
+        let balls: Vec<Sphere> = (0..5_000).map(|_| Sphere::new(random.point(), 8.0).unwrap()).collect();
+        let tree = Bvh::new(balls.clone(), vec![]);
+        assert!(tree.stack > SMALL_STACK, "{}", tree.stack);
+        for _ in 0..20 {
+            let ray = Ray::new(20.0 * random.direction(), random.direction()).unwrap();
+            let ray = Ray::new(ray.origin(), 0.1 * ray.direction() - ray.origin()).unwrap();
+            let expected = balls.iter().filter_map(|ball| ball.closest(&ray, AHEAD)).min_by(f64::total_cmp);
+            assert_eq!(tree.closest(&ray, AHEAD).map(|hit| hit.t), expected);
+        }
+        assert_eq!(deeper(&[1, 2, 3], &mut Vec::new(), 5), [1, 2, 3, 0, 0]);
+    }
+}
