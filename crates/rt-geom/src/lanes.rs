@@ -31,8 +31,31 @@ impl<S: Simd> PencilLanes<S> {
     }
 }
 
-/// What a filter says about eight rays and the shapes that they may meet. What it neither rules out nor gives a candidate
-/// is for [`candidate`](crate::leaf::Leaf::candidate) to decide.
+/// A shape with kernels for eight rays, as far as a filter and one step decide. What they leave open is for
+/// [`candidate`](crate::ray::Candidates::candidate) to decide.
+pub(crate) trait LaneKernels {
+    /// What a filter says about this shape and eight rays of one origin.
+    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S>;
+
+    /// What a filter says about eight rays, each with a shape.
+    fn lane_candidates<S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        range: (f64, f64),
+    ) -> LaneCandidates<S>;
+
+    /// The correctly rounded `t` of eight hits with bounds, each with its shape, and in which lanes it is certain, as
+    /// bits.
+    fn lane_roundings<const FMA: bool, S: Simd>(
+        simd: S,
+        shapes: [&Self; 8],
+        rays: &RayLanes<S>,
+        bounds: (f64x8<S>, f64x8<S>),
+    ) -> (f64x8<S>, u64);
+}
+
+/// What a filter says about eight rays and the shapes that they may meet.
 pub(crate) struct LaneCandidates<S: Simd> {
     pub(crate) low: f64x8<S>,
     pub(crate) high: f64x8<S>,

@@ -6,42 +6,17 @@
 
 use std::cmp::Ordering;
 
-use fearless_simd::{Simd, f64x8};
+use fearless_simd::Simd;
 use rt_math::Roots;
 
 use crate::crossings::{self, Pass};
-use crate::lanes::{LaneCandidates, PencilLanes, RayLanes, lanes};
-use crate::ray::{Candidate, PreparedRay, holds};
+use crate::lanes::{LaneKernels, RayLanes, lanes};
+use crate::ray::{Candidate, Candidates, PreparedRay, holds};
 use crate::simd::{has_fma, prefetch_lines};
 use crate::{Hit, Ray, Shape, Side, Sphere, Triangle};
 
 /// A primitive at the leaves of a tree.
-pub(crate) trait Leaf: Copy + PartialEq + Send + Sync {
-    /// Bounds of the closest hit's `t`: none if nothing in the range is hit, or the hit surely lies beyond `limit`.
-    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate;
-
-    /// The same for eight rays with one origin, as far as a filter decides.
-    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S>;
-
-    /// The same for eight rays, each with a shape, as far as a filter decides.
-    fn lane_candidates<S: Simd>(
-        simd: S,
-        shapes: [&Self; 8],
-        rays: &RayLanes<S>,
-        range: (f64, f64),
-    ) -> LaneCandidates<S>;
-
-    /// The correctly rounded `t` of eight hits with bounds, each with its shape, and in which lanes it is certain.
-    fn lane_roundings<const FMA: bool, S: Simd>(
-        simd: S,
-        shapes: [&Self; 8],
-        rays: &RayLanes<S>,
-        bounds: (f64x8<S>, f64x8<S>),
-    ) -> (f64x8<S>, u64);
-
-    /// Whether the range holds a hit.
-    fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool;
-
+pub(crate) trait Leaf: Candidates + LaneKernels + Copy + PartialEq + Send + Sync {
     /// Gives the `t` of each hit in the range, in ascending order.
     fn each_hit(&self, ray: &PreparedRay, found: impl FnMut(f64));
 
@@ -66,41 +41,6 @@ pub(crate) enum Surrounds {
 }
 
 impl Leaf for Sphere {
-    #[inline(always)]
-    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate {
-        self.candidate::<FMA>(ray, limit)
-    }
-
-    #[inline(always)]
-    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
-        self.pencil_candidates(simd, rays, range)
-    }
-
-    #[inline(always)]
-    fn lane_candidates<S: Simd>(
-        simd: S,
-        shapes: [&Self; 8],
-        rays: &RayLanes<S>,
-        range: (f64, f64),
-    ) -> LaneCandidates<S> {
-        Self::lane_candidates(simd, shapes, rays, range)
-    }
-
-    #[inline(always)]
-    fn lane_roundings<const FMA: bool, S: Simd>(
-        simd: S,
-        shapes: [&Self; 8],
-        rays: &RayLanes<S>,
-        bounds: (f64x8<S>, f64x8<S>),
-    ) -> (f64x8<S>, u64) {
-        Self::lane_roundings::<FMA, S>(simd, shapes, rays, bounds)
-    }
-
-    #[inline(always)]
-    fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool {
-        self.meets::<FMA>(ray)
-    }
-
     fn each_hit(&self, ray: &PreparedRay, mut found: impl FnMut(f64)) {
         let within = ray.within();
         let mut root = |t| {
@@ -132,41 +72,6 @@ impl Leaf for Sphere {
 }
 
 impl Leaf for Triangle {
-    #[inline(always)]
-    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate {
-        self.candidate::<FMA>(ray, limit)
-    }
-
-    #[inline(always)]
-    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
-        self.pencil_candidates(simd, rays, range)
-    }
-
-    #[inline(always)]
-    fn lane_candidates<S: Simd>(
-        simd: S,
-        shapes: [&Self; 8],
-        rays: &RayLanes<S>,
-        range: (f64, f64),
-    ) -> LaneCandidates<S> {
-        Self::lane_candidates(simd, shapes, rays, range)
-    }
-
-    #[inline(always)]
-    fn lane_roundings<const FMA: bool, S: Simd>(
-        simd: S,
-        shapes: [&Self; 8],
-        rays: &RayLanes<S>,
-        _: (f64x8<S>, f64x8<S>),
-    ) -> (f64x8<S>, u64) {
-        Self::lane_roundings::<FMA, S>(simd, shapes, rays)
-    }
-
-    #[inline(always)]
-    fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool {
-        self.meets::<FMA>(ray)
-    }
-
     fn each_hit(&self, ray: &PreparedRay, mut found: impl FnMut(f64)) {
         if let Some(t) = self.closest(ray.ray, ray.within()) {
             found(t);
@@ -470,6 +375,7 @@ mod tests {
     use oracle::Random;
 
     use super::*;
+    use crate::lanes::PencilLanes;
     use crate::simd::dispatch;
 
     #[inline(always)]

@@ -227,6 +227,15 @@ impl Candidate {
     }
 }
 
+/// A shape whose hits have candidates.
+pub(crate) trait Candidates {
+    /// Bounds of the closest hit's `t`: none if nothing in the range is hit, or the hit surely lies beyond `limit`.
+    fn candidate<const FMA: bool>(&self, ray: &PreparedRay, limit: f64) -> Candidate;
+
+    /// Whether the range holds a hit.
+    fn meets<const FMA: bool>(&self, ray: &PreparedRay) -> bool;
+}
+
 /// What a filter in plain doubles says about a line and a shape.
 pub(crate) enum FilterVerdict<C> {
     /// The line surely misses it.

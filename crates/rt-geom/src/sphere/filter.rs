@@ -10,7 +10,7 @@ use rt_math::exact::{U, power_of_two};
 use super::finish::{Approximation, SphereCrossing, WhichRoot, rounded};
 use super::{Sphere, exact};
 use crate::Ray;
-use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds};
+use crate::ray::{Candidate, Candidates, FilterVerdict, PreparedRay, cross, dot, holds};
 use crate::simd::dispatch;
 
 /// Where the filter's bounds are proved: `w.w + r²` is at least `2^-250` and at most `2^600`. Nothing overflows there,
@@ -104,10 +104,9 @@ pub(super) fn roots_kernel<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, r
     }
 }
 
-impl Sphere {
-    /// What `any` returns.
+impl Candidates for Sphere {
     #[inline(always)]
-    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
+    fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
         match filter::<FMA>(self, prepared.ray) {
             FilterVerdict::Misses => false,
             // For the whole ray the signs are enough, and need no root.
@@ -120,17 +119,17 @@ impl Sphere {
         }
     }
 
-    /// Returns bounds of the closest hit's `t`: none if nothing in the range is hit or the hit surely lies beyond
-    /// `limit`.
     #[inline(always)]
-    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Candidate {
+    fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Candidate {
         match filter::<FMA>(self, prepared.ray) {
             FilterVerdict::Misses => Candidate::NONE,
             FilterVerdict::Crosses(crossing) => self.offer(&crossing, prepared, limit),
             FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
     }
+}
 
+impl Sphere {
     /// Returns the candidate of a line that crosses the surface.
     #[inline(always)]
     fn offer(&self, crossing: &SphereCrossing, prepared: &PreparedRay, limit: f64) -> Candidate {

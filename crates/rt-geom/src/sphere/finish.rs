@@ -10,6 +10,8 @@
 //! of which the filter knows `sqrt(Delta)`, and that `t* - t` is small. A rounding test tells whether `t` and this step
 //! decide the last bit. `docs/numerics.md`, section 5, proves the bounds.
 
+use std::ops::Mul;
+
 use fearless_simd::{Simd, f64x2, f64x4, prelude::*};
 use rt_math::exact::{U, round_if_certain, two_diff, two_sum};
 
@@ -164,13 +166,7 @@ fn residual<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, t: f6
     let origin = f64x4::simd_from(simd, [o.x, o.y, o.z, 0.0]);
     let center = f64x4::simd_from(simd, [c.x, c.y, c.z, sphere.radius]);
     let direction = f64x4::simd_from(simd, [d.x, d.y, d.z, 0.0]);
-    // The squares of the components of w + t d, as square + low.
-    let (w, w_low) = two_diff(origin, center);
-    let (step, step_low) = two_prod::<FMA, S, _>(f64x4::splat(simd, t), direction);
-    let (high, error) = two_sum(w, step);
-    let low = error + (w_low + step_low);
-    let (square, square_low) = two_prod::<FMA, S, _>(high, high);
-    let low = (high + high).mul_add(low, square_low);
+    let (square, low) = square::<FMA, S, _>((origin, direction), center, f64x4::splat(simd, t));
     // (x² + z²) + (y² - r²) is nearly zero, so that the last of these sums is as good as exact.
     let sign = f64x2::simd_from(simd, [1.0, -1.0]);
     let ((square, square_of_z_r), (low, low_of_z_r)) = (square.split(), low.split());
@@ -178,6 +174,20 @@ fn residual<const FMA: bool, S: Simd>(simd: S, sphere: &Sphere, ray: &Ray, t: f6
     let low = low_of_z_r.mul_add(sign, low);
     let total = |lanes: f64x2<S>| <[f64; 2]>::from(lanes).into_iter().sum::<f64>();
     (total(sum) + total(error)) + total(low)
+}
+
+/// The squares of coordinates of `o - c + t d`, as square + low.
+#[inline(always)]
+pub(super) fn square<const FMA: bool, S: Simd, V>((o, d): (V, V), c: V, t: V) -> (V, V)
+where
+    V: SimdFloat<S, Element = f64> + Mul<f64, Output = V>,
+{
+    let (w, w_low) = two_diff(o, c);
+    let (step, step_low) = two_prod::<FMA, S, _>(t, d);
+    let (high, error) = two_sum(w, step);
+    let low = error + (w_low + step_low);
+    let (square, square_low) = two_prod::<FMA, S, _>(high, high);
+    (square, (high + high).mul_add(low, square_low))
 }
 
 #[cfg(test)]
@@ -191,7 +201,7 @@ mod tests {
     use super::super::exact as integers;
     use super::super::filter::{closest, closest_kernel, filter, roots, roots_kernel};
     use super::*;
-    use crate::ray::{FilterVerdict, PreparedRay};
+    use crate::ray::{Candidates, FilterVerdict, PreparedRay};
 
     /// A sphere and a ray at it, from up to 2^20 radii away.
     fn case(rng: &mut Random, i: i32) -> (Sphere, Ray) {

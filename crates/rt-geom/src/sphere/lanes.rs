@@ -6,8 +6,8 @@ use rt_math::exact::{rounded_ends, two_diff, two_sum};
 
 use super::Sphere;
 use super::filter::{ERROR, LARGEST, SMALLEST};
-use super::finish::RESIDUAL_ERROR;
-use crate::lanes::{LaneCandidates, PencilLanes, RayLanes, cross, dot, lanes, minus};
+use super::finish::{RESIDUAL_ERROR, square};
+use crate::lanes::{LaneCandidates, LaneKernels, PencilLanes, RayLanes, cross, dot, lanes, minus};
 use crate::ray::dot as dot_of_one;
 use crate::simd::two_prod;
 
@@ -59,16 +59,10 @@ impl<S: Simd> LaneCrossings<S> {
     }
 }
 
-impl Sphere {
-    /// What a filter says about this sphere and eight rays of one origin: near roots alone.
-    // The operations of `filter` and `approximation`.
+impl LaneKernels for Sphere {
+    // Near roots alone. The operations of `filter` and `approximation`.
     #[inline(always)]
-    pub(crate) fn pencil_candidates<S: Simd>(
-        &self,
-        simd: S,
-        rays: &PencilLanes<S>,
-        range: (f64, f64),
-    ) -> LaneCandidates<S> {
+    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
         let w = rays.origin - self.center;
         let [x, y, z] = rays.cross(w);
         let (w_square, radius_square) = (dot_of_one::<false>(w, w), self.radius * self.radius);
@@ -90,9 +84,8 @@ impl Sphere {
         found
     }
 
-    /// What a filter says about eight rays, each with a sphere.
     #[inline(always)]
-    pub(crate) fn lane_candidates<S: Simd>(
+    fn lane_candidates<S: Simd>(
         simd: S,
         spheres: [&Self; 8],
         rays: &RayLanes<S>,
@@ -104,11 +97,9 @@ impl Sphere {
         LaneCandidates::new(simd, lines, (t - root_error, t + root_error), range)
     }
 
-    /// The correctly rounded `t` of eight hits with bounds, where one step is enough for certainty: with these lanes as
-    /// bits.
     // The operations of `refined` and `residual`.
     #[inline(always)]
-    pub(crate) fn lane_roundings<const FMA: bool, S: Simd>(
+    fn lane_roundings<const FMA: bool, S: Simd>(
         simd: S,
         spheres: [&Self; 8],
         rays: &RayLanes<S>,
@@ -126,9 +117,9 @@ impl Sphere {
 
         // |w + t d|² - r², the squares as square + low.
         let (o, d) = (&rays.origin, &rays.direction);
-        let (x, x_low) = square::<FMA, S>(o[0], center[0], t, d[0]);
-        let (y, y_low) = square::<FMA, S>(o[1], center[1], t, d[1]);
-        let (z, z_low) = square::<FMA, S>(o[2], center[2], t, d[2]);
+        let (x, x_low) = square::<FMA, S, _>((o[0], d[0]), center[0], t);
+        let (y, y_low) = square::<FMA, S, _>((o[1], d[1]), center[1], t);
+        let (z, z_low) = square::<FMA, S, _>((o[2], d[2]), center[2], t);
         let (r, r_low) = two_prod::<FMA, S, _>(radius, radius);
         let ((xz, xz_error), (yr, yr_error)) = (two_sum(x, z), two_diff(y, r));
         let residual = ((xz + yr) + (xz_error + yr_error)) + ((x_low + z_low) + (y_low - r_low));
@@ -139,15 +130,4 @@ impl Sphere {
         let (lower, upper) = rounded_ends(t, step, error);
         (upper, (known & lower.simd_eq(upper)).to_bitmask())
     }
-}
-
-/// `(o - c + t d)²` of one coordinate, as square + low.
-#[inline(always)]
-fn square<const FMA: bool, S: Simd>(o: f64x8<S>, c: f64x8<S>, t: f64x8<S>, d: f64x8<S>) -> (f64x8<S>, f64x8<S>) {
-    let (w, w_low) = two_diff(o, c);
-    let (step, step_low) = two_prod::<FMA, S, _>(t, d);
-    let (high, error) = two_sum(w, step);
-    let low = error + (w_low + step_low);
-    let (square, square_low) = two_prod::<FMA, S, _>(high, high);
-    (square, (high + high).mul_add(low, square_low))
 }

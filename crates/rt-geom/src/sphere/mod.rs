@@ -25,7 +25,7 @@ use rt_math::Roots;
 use rt_math::exact::{U, power_of_two, power_of_two_near_inverse};
 
 use crate::Ray;
-use crate::ray::{PreparedRay, max_abs};
+use crate::ray::{Candidates, PreparedRay, max_abs};
 
 /// Swallows what underflow does to a comparison of squares: `2^-1000`.
 const UNDERFLOW: f64 = power_of_two(-1000);

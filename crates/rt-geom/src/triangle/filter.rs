@@ -9,7 +9,7 @@ use rt_math::exact::U;
 use super::finish::{Refined, TriangleCrossing};
 use super::{FARTHEST, Triangle, exact};
 use crate::Ray;
-use crate::ray::{Candidate, FilterVerdict, PreparedRay, cross, dot, holds, larger, smaller};
+use crate::ray::{Candidate, Candidates, FilterVerdict, PreparedRay, cross, dot, holds, larger, smaller};
 use crate::simd::dispatch;
 
 /// The error of each volume that the filter computes, relative to `D E (E + S)`, and of the height, relative to
@@ -186,10 +186,9 @@ fn again_kernel<const FMA: bool, S: Simd>(simd: S, triangle: &Triangle, ray: &Ra
     }
 }
 
-impl Triangle {
-    /// What `any` returns.
+impl Candidates for Triangle {
     #[inline(always)]
-    pub(crate) fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
+    fn meets<const FMA: bool>(&self, prepared: &PreparedRay) -> bool {
         if prepared.start.to_bits() != 0 || prepared.end != f64::INFINITY {
             return self.candidate::<FMA>(prepared, f64::INFINITY).is_some();
         }
@@ -207,9 +206,8 @@ impl Triangle {
         self.exact_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some()
     }
 
-    /// Returns bounds of the hit's `t`: none if nothing in the range is hit or the hit surely lies beyond `limit`.
     #[inline(always)]
-    pub(crate) fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Candidate {
+    fn candidate<const FMA: bool>(&self, prepared: &PreparedRay, limit: f64) -> Candidate {
         match filter::<FMA>(self, prepared.ray) {
             FilterVerdict::Misses => Candidate::NONE,
             FilterVerdict::Crosses(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
@@ -218,7 +216,9 @@ impl Triangle {
             FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
     }
+}
 
+impl Triangle {
     #[cold]
     #[inline(never)]
     fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Candidate {

@@ -234,7 +234,7 @@ mod tests {
     use super::super::exact as integers;
     use super::super::filter::{again, both_kernel, closest_kernel, filter, weights_kernel};
     use super::*;
-    use crate::ray::{FilterVerdict, PreparedRay};
+    use crate::ray::{Candidates, FilterVerdict, PreparedRay};
 
     #[test]
     fn fused_and_plain_arithmetic_give_the_same_values() {

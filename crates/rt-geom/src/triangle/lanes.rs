@@ -7,7 +7,7 @@ use rt_math::exact::{rounded_ends, two_sum};
 use super::filter::ERROR;
 use super::finish::{REST_ERROR, SOLUTION_ERROR, left_over};
 use super::{FARTHEST, Triangle};
-use crate::lanes::{LaneCandidates, PencilLanes, RayLanes, cross, dot, lanes, minus};
+use crate::lanes::{LaneCandidates, LaneKernels, PencilLanes, RayLanes, cross, dot, lanes, minus};
 use crate::ray::{cross as cross_of_one, dot as dot_of_one};
 
 /// What the filter finds of eight lines, each with a triangle.
@@ -64,16 +64,10 @@ impl<S: Simd> LaneCrossings<S> {
     }
 }
 
-impl Triangle {
-    /// What a filter says about this triangle and eight rays of one origin.
+impl LaneKernels for Triangle {
     // The operations of `filter` and `TriangleCrossing::bounds`.
     #[inline(always)]
-    pub(crate) fn pencil_candidates<S: Simd>(
-        &self,
-        simd: S,
-        rays: &PencilLanes<S>,
-        range: (f64, f64),
-    ) -> LaneCandidates<S> {
+    fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
         let [a, b, c] = self.vertices;
         let (e, f, s) = (b - a, c - a, rays.origin - a);
         let edge = self.edge;
@@ -101,10 +95,9 @@ impl Triangle {
         LaneCandidates::new(simd, (misses, crosses), (t - error, t + error), range)
     }
 
-    /// What a filter says about eight rays, each with a triangle.
     // The operations of `TriangleCrossing::bounds`.
     #[inline(always)]
-    pub(crate) fn lane_candidates<S: Simd>(
+    fn lane_candidates<S: Simd>(
         simd: S,
         triangles: [&Self; 8],
         rays: &RayLanes<S>,
@@ -116,13 +109,13 @@ impl Triangle {
         LaneCandidates::new(simd, lines, (t - error, t + error), range)
     }
 
-    /// The correctly rounded `t` of eight hits, where one step is enough for certainty: with these lanes as bits.
     // The operations of `Refined::new` and `Refined::t`.
     #[inline(always)]
-    pub(crate) fn lane_roundings<const FMA: bool, S: Simd>(
+    fn lane_roundings<const FMA: bool, S: Simd>(
         simd: S,
         triangles: [&Self; 8],
         rays: &RayLanes<S>,
+        _: (f64x8<S>, f64x8<S>),
     ) -> (f64x8<S>, u64) {
         let crossings = LaneCrossings::new(simd, triangles, rays);
         let LaneCrossings { vertices: [a, b, c], e, f, edge, size, sign, inverse, t, weights, .. } = crossings;

@@ -28,7 +28,7 @@ use glam::DVec3;
 use rt_math::exact::{U, power_of_two};
 
 use crate::Ray;
-use crate::ray::{FilterVerdict, PreparedRay, larger, max_abs};
+use crate::ray::{Candidates, FilterVerdict, PreparedRay, larger, max_abs};
 pub(crate) use exact::{height_sign, slope_sign};
 use filter::{filter, surely_leans};
 pub use locate::{PointInTriangle, inside_triangle};
