@@ -1,9 +1,10 @@
 //! The report's bounding-sphere tree: a list is halved again and again, and every part has its minimal sphere.
 //!
 //! The root holds all `n` primitives; its two children hold the first `⌊n/2⌋` and the rest, and so on. A query walks
-//! the minimal spheres: a part is visited if the ray may meet its sphere before the best hit so far, the nearer of two
+//! the minimal spheres: a part is visited if the ray may meet its sphere before the best hit so far, the nearest part
 //! first. That test is made in plain doubles with a proved margin, so it may visit too much and never loses a hit; the
-//! exact kernels decide about the primitives alone.
+//! exact kernels decide about the primitives alone. One step tests eight spheres at once: those of the parts three
+//! halvings below, or of the primitives of a part that holds no more than eight.
 //!
 //! Halving a list halves space only as far as the list is sorted in space. [`SphereTree::new`] takes the list as it
 //! is, [`SphereTree::sorted`] sorts it along a Hilbert curve first (`hilbert.rs`).
@@ -15,13 +16,14 @@
 
 use std::ops::Range;
 
+use fearless_simd::{Simd, f64x8, prelude::*};
 use rt_math::exact::{U, power_of_two, power_of_two_near_inverse};
-use rt_math::fma_dispatch;
 
 use crate::enclosing::nodes::{Subtree, enclosing_nodes};
 use crate::hilbert;
 use crate::leaf::{Any, Closest, Leaves, Query};
 use crate::ray::{PreparedRay, is_open, larger, max_abs};
+use crate::simd::{dispatch, prefetch_lines};
 use crate::{Hit, Ray, Shape, Sphere, Triangle, Visits, enclosing_sphere};
 
 /// The tree by index halves, over spheres and triangles (spheres first), with the plain loop's answers bit for bit.
@@ -47,14 +49,16 @@ pub struct SphereTree {
     scale: f64,
 }
 
-/// A part of two halves, with the minimal spheres of both; scaled. A radius is infinite where no finite sphere
-/// encloses.
+/// Parts of the list with the minimal sphere of each; scaled. A radius is infinite where no finite sphere encloses.
+/// Six whole cache lines.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
+#[repr(C, align(64))]
 struct Node {
-    center: [[f64; 2]; 3],
-    radius: [f64; 2],
-    halves: [Child; 2],
+    center: [[f64; WIDTH]; 3],
+    radius: [f64; WIDTH],
+    children: [Child; WIDTH],
+    /// How many parts there are.
+    len: usize,
 }
 
 /// A node, or primitives at neighbouring places that are tested one after the other.
@@ -65,9 +69,12 @@ struct Child {
     count: u32,
 }
 
-/// What testing both spheres of a node costs, in tests of primitives. So many primitives and fewer are never worth a
-/// node.
-const PAIR_COST: usize = 8;
+/// As many parts as [`LEVELS`] halvings make. A part of no more primitives is not halved: they are its parts.
+const WIDTH: usize = 8;
+const LEVELS: u32 = 3;
+
+/// What a visit of a node costs, in tests of primitives. So many primitives and fewer are never worth a node.
+const NODE_COST: f64 = 4.0;
 
 /// The rounding errors of a sphere's test, relative to its radius and its distance from the ray's origin:
 /// `docs/numerics.md`, lemma 9.8.
@@ -79,8 +86,10 @@ const UNDERFLOW: f64 = power_of_two(-100);
 /// A unit of `t` must be as long as this or its reciprocal in scaled coordinates, or every `t` counts: `2^960`.
 const LONGEST: f64 = power_of_two(960);
 
-/// The depth of a tree of fewer than 2^32 primitives.
-const DEPTH: usize = 32;
+/// The most parts that wait for a visit: no more than [`WIDTH`] for each node on the way down. Fewer than 2^32
+/// primitives are halved 29 times until no part has more than [`WIDTH`] of them, so that there are eleven nodes: of the
+/// heights 0, 3, .., 27, and the root.
+const STACK: usize = 11 * WIDTH;
 
 impl SphereTree {
     /// Builds the tree over the list as it is, in parallel on rayon's current pool. Any input will do, also none at
@@ -129,63 +138,54 @@ impl SphereTree {
         let root = Child { first: 0, count: short(leaves.len()) };
         let mut tree = Self { leaves, nodes: Vec::new(), root, scale };
         if let Some(whole) = parts.len().checked_sub(1) {
-            let runs = tree.runs(&parts, &spheres);
-            tree.root = tree.plant(whole, &parts, &spheres, &runs);
+            let plan = tree.plan(&parts, &spheres, bounds);
+            let (parts, spheres, plan) = (&parts, &spheres, &plan);
+            let mut planting = Planting { parts, spheres, bounds, plan, scale, nodes: Vec::new() };
+            tree.root = planting.plant(whole);
+            tree.nodes = planting.nodes;
         }
         tree
     }
 
-    /// For each part how many of its primitives are tested one after the other; 0 if its halves are visited in its
-    /// place.
-    fn runs(&self, parts: &[Subtree], spheres: &[Option<Sphere>]) -> Vec<u32> {
-        let radius = |at: usize| spheres[at].map_or(f64::INFINITY, |sphere| sphere.radius());
+    /// What becomes of each part, whichever costs less.
+    ///
+    /// Of the parts that are split, those become nodes that lie a multiple of [`LEVELS`] halvings above the last ones,
+    /// so that the many nodes at the bottom are full.
+    fn plan(&self, parts: &[Subtree], spheres: &[Option<Sphere>], bounds: &[Option<Sphere>]) -> Vec<Plan> {
+        let radius = |sphere: Option<Sphere>| sphere.map_or(f64::INFINITY, |sphere| sphere.radius());
         let equal = |a: usize, b: usize| self.leaves.placed(a) == self.leaves.placed(b);
         let mut costs = vec![0.0; parts.len()];
-        let mut runs = vec![0; parts.len()];
-        for (at, part) in parts.iter().enumerate() {
-            let (first, count) = (part.leaves.start, part.leaves.len());
-            let halves = || part.children.clone();
-            let all_equal = if halves().is_empty() {
-                part.leaves.clone().all(|place| equal(first, place))
+        let mut plan: Vec<Plan> = Vec::with_capacity(parts.len());
+        for (at, Subtree { leaves, children: halves }) in parts.iter().enumerate() {
+            // How often what is within is met by a ray that meets the part. NaN, of two that are infinite or 0, counts
+            // as 1.
+            let share = |within: Option<Sphere>| {
+                let ratio = radius(within) / radius(spheres[at]);
+                (ratio * ratio).min(1.0)
+            };
+            let height = halves.clone().map(|half| plan[half].height() + 1).max().unwrap_or(0);
+            let is_node = height % LEVELS == 0 || at + 1 == parts.len();
+            let (below, all_equal) = if halves.is_empty() {
+                let below: f64 = leaves.clone().map(|place| share(bounds[place])).sum();
+                (below, leaves.clone().all(|place| equal(leaves.start, place)))
             } else {
-                halves().all(|half| runs[half] == 1 && equal(first, parts[half].leaves.start))
+                let same = |half: usize| plan[half] == Plan::Run(1) && equal(leaves.start, parts[half].leaves.start);
+                let below: f64 = halves.clone().map(|half| share(spheres[half]) * costs[half]).sum();
+                (below, halves.clone().all(same))
             };
-            let share = |half: usize| {
-                let ratio = radius(half) / radius(at);
-                // NaN, of two that are infinite or 0, counts as 1.
-                costs[half] * (ratio * ratio).min(1.0)
-            };
-            let split = PAIR_COST as f64 + halves().map(share).sum::<f64>();
-            (costs[at], runs[at]) = if all_equal {
+            let (split, run) = (if is_node { NODE_COST + below } else { below }, leaves.len() as f64);
+            let (cost, planned) = if all_equal {
                 // The first, whose index is the lowest, answers for all.
-                (1.0, 1)
-            } else if halves().is_empty() || count as f64 <= split {
-                (count as f64, short(count))
+                (1.0, Plan::Run(1))
+            } else if run <= split {
+                (run, Plan::Run(short(leaves.len())))
             } else {
-                (split, 0)
+                (split, Plan::Split(height))
             };
+            costs[at] = cost;
+            plan.push(planned);
         }
-        runs
-    }
-
-    /// Appends the nodes of a part; the recursion is no deeper than the tree, [`DEPTH`].
-    fn plant(&mut self, at: usize, parts: &[Subtree], spheres: &[Option<Sphere>], runs: &[u32]) -> Child {
-        let part = &parts[at];
-        if runs[at] > 0 {
-            return Child { first: short(part.leaves.start), count: runs[at] };
-        }
-        let child = Child { first: short(self.nodes.len()), count: 0 };
-        let halves = [part.children.start, part.children.start + 1];
-        let [a, b] = halves.map(|half| match spheres[half] {
-            Some(sphere) => (sphere.center() * self.scale, sphere.radius() * self.scale),
-            None => (glam::DVec3::ZERO, f64::INFINITY),
-        });
-        let center = std::array::from_fn(|axis| [a.0[axis], b.0[axis]]);
-        self.nodes.push(Node { center, radius: [a.1, b.1], halves: [child; 2] });
-        for (side, half) in halves.into_iter().enumerate() {
-            self.nodes[child.first as usize].halves[side] = self.plant(half, parts, spheres, runs);
-        }
-        child
+        plan
     }
 
     /// How many primitives the tree holds.
@@ -228,10 +228,87 @@ impl SphereTree {
     }
 }
 
+/// What becomes of a part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Plan {
+    /// So many of its primitives are tested one after the other.
+    Run(u32),
+    /// Its halves are visited in its place, or its primitives one by one; so many halvings lie below.
+    Split(u32),
+}
+
+impl Plan {
+    fn height(self) -> u32 {
+        match self {
+            Self::Run(_) => 0,
+            Self::Split(height) => height,
+        }
+    }
+}
+
+/// The parts, of which nodes are made, with the spheres of the parts and of the primitives, and the nodes so far.
+struct Planting<'a> {
+    parts: &'a [Subtree],
+    spheres: &'a [Option<Sphere>],
+    bounds: &'a [Option<Sphere>],
+    plan: &'a [Plan],
+    scale: f64,
+    nodes: Vec<Node>,
+}
+
+impl Planting<'_> {
+    /// Appends the nodes of a part that is visited; the recursion is no deeper than the tree.
+    fn plant(&mut self, at: usize) -> Child {
+        let part = &self.parts[at];
+        if let Plan::Run(count) = self.plan[at] {
+            return Child { first: short(part.leaves.start), count };
+        }
+        let child = Child { first: short(self.nodes.len()), count: 0 };
+        let (center, radius) = ([[0.0; WIDTH]; 3], [0.0; WIDTH]);
+        self.nodes.push(Node { center, radius, children: [child; WIDTH], len: 0 });
+        if part.children.is_empty() {
+            for place in part.leaves.clone() {
+                self.add(child.first, self.bounds[place], Child { first: short(place), count: 1 });
+            }
+        } else {
+            self.gather(child.first, at);
+        }
+        child
+    }
+
+    /// Adds to a node the halves of a part, or what stands for them.
+    fn gather(&mut self, node: u32, at: usize) {
+        for half in self.parts[at].children.clone() {
+            match self.plan[half] {
+                Plan::Split(height) if height % LEVELS != 0 => self.gather(node, half),
+                _ => {
+                    let child = self.plant(half);
+                    self.add(node, self.spheres[half], child);
+                }
+            }
+        }
+    }
+
+    /// Adds a part with its sphere to a node.
+    fn add(&mut self, node: u32, sphere: Option<Sphere>, child: Child) {
+        let (center, radius) = match sphere {
+            Some(sphere) => (sphere.center() * self.scale, sphere.radius() * self.scale),
+            None => (glam::DVec3::ZERO, f64::INFINITY),
+        };
+        let node = &mut self.nodes[node as usize];
+        for axis in 0..3 {
+            node.center[axis][node.len] = center[axis];
+        }
+        node.radius[node.len] = radius;
+        node.children[node.len] = child;
+        node.len += 1;
+    }
+}
+
 /// Lists the parts below a range of places, the halves of a part next to each other, and the range itself last.
 fn halve(range: Range<usize>, parts: &mut Vec<Subtree>) {
     fn below(range: Range<usize>, parts: &mut Vec<Subtree>) -> Range<usize> {
-        if range.len() <= PAIR_COST {
+        if range.len() <= WIDTH {
             return 0..0;
         }
         let middle = range.start + range.len() / 2;
@@ -314,72 +391,66 @@ impl Segment {
         }
     }
 
-    /// How the line passes a sphere of a node.
+    /// The spheres of a node that the segment may meet, as bits, and where it may enter each.
     ///
     /// With `v` from the center to the origin, the line is nearest to the center at `s = -v.u`, and passes it there at
     /// the distance `|v + s u|`. NaN, from numbers out of range, counts as met.
     #[inline(always)]
-    fn pass<const FMA: bool>(&self, node: &Node, side: usize) -> Passage {
-        let [cx, cy, cz] = node.center;
-        let (x, y, z) = (self.origin[0] - cx[side], self.origin[1] - cy[side], self.origin[2] - cz[side]);
-        let ([u, v, w], radius) = (self.direction, node.radius[side]);
-        let s = -fused::<FMA>(x, u, fused::<FMA>(y, v, z * w));
+    fn meet<S: Simd>(&self, simd: S, node: &Node) -> (u64, [f64; WIDTH]) {
+        let [x, y, z] = &node.center;
+        let center = [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)];
+        let radius = f64x8::from_slice(simd, &node.radius);
+        let [u, v, w] = self.direction;
+        let x = f64x8::splat(simd, self.origin[0]) - center[0];
+        let y = f64x8::splat(simd, self.origin[1]) - center[1];
+        let z = f64x8::splat(simd, self.origin[2]) - center[2];
+        let nearest = -x.mul_add(u, y.mul_add(v, z * w));
         let far = (x.abs() + y.abs()) + (z.abs() + radius);
-        let reach = radius + fused::<FMA>(MARGIN, far, UNDERFLOW);
-        let (x, y, z) = (fused::<FMA>(s, u, x), fused::<FMA>(s, v, y), fused::<FMA>(s, w, z));
-        let aside = fused::<FMA>(x, x, fused::<FMA>(y, y, z * z));
+        let reach = far.mul_add(MARGIN, f64x8::splat(simd, UNDERFLOW)) + radius;
+        let (x, y, z) = (nearest.mul_add(u, x), nearest.mul_add(v, y), nearest.mul_add(w, z));
+        let aside = x.mul_add(x, y.mul_add(y, z * z));
         // (Not fused: where both squares overflow, this must be NaN.)
-        Passage { nearest: s, chord: reach * reach - aside }
-    }
-
-    /// Where the segment may enter the sphere; `None` if it surely misses it.
-    ///
-    /// Branches in this order, which are predicted: the usual miss need not wait for the root.
-    #[inline(always)]
-    fn enter(&self, passage: &Passage) -> Option<f64> {
-        if passage.chord < 0.0 {
-            return None;
-        }
-        let half = passage.chord.sqrt();
-        let misses = (passage.nearest - half > self.last) | (self.start - passage.nearest > half);
-        if misses { None } else { Some(larger(passage.nearest - half, f64::MIN)) }
+        let chord = reach * reach - aside;
+        let half = chord.sqrt();
+        let enter = nearest - half;
+        let misses = chord.simd_lt(f64x8::splat(simd, 0.0))
+            | enter.simd_gt(f64x8::splat(simd, self.last))
+            | (f64x8::splat(simd, self.start) - nearest).simd_gt(half);
+        (!misses.to_bitmask() & ((1 << node.len) - 1), enter.into())
     }
 }
 
-/// How a line passes a sphere.
-#[derive(Clone, Copy)]
-struct Passage {
-    /// Where it is nearest to the center.
-    nearest: f64,
-    /// Half the chord, squared; negative for a line that misses.
-    chord: f64,
-}
-
-#[inline(always)]
-fn fused<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FMA { a.mul_add(b, c) } else { a * b + c }
-}
-
-fma_dispatch! {
+dispatch! {
     fn closest(tree: &SphereTree, ray: &Ray, start: f64, end: f64) -> (Option<Hit>, Visits) = walk_closest;
 }
 
-fma_dispatch! {
+dispatch! {
     fn any(tree: &SphereTree, ray: &Ray, start: f64, end: f64) -> bool = walk_any;
 }
 
 #[inline(always)]
-fn walk_closest<const FMA: bool>(tree: &SphereTree, ray: &Ray, start: f64, end: f64) -> (Option<Hit>, Visits) {
-    walk::<FMA, Closest>(tree, ray, start..end)
+fn walk_closest<const FMA: bool, S: Simd>(
+    simd: S,
+    tree: &SphereTree,
+    ray: &Ray,
+    start: f64,
+    end: f64,
+) -> (Option<Hit>, Visits) {
+    walk::<FMA, S, Closest>(simd, tree, ray, start..end)
 }
 
 #[inline(always)]
-fn walk_any<const FMA: bool>(tree: &SphereTree, ray: &Ray, start: f64, end: f64) -> bool {
-    walk::<FMA, Any>(tree, ray, start..end).0
+fn walk_any<const FMA: bool, S: Simd>(simd: S, tree: &SphereTree, ray: &Ray, start: f64, end: f64) -> bool {
+    walk::<FMA, S, Any>(simd, tree, ray, start..end).0
 }
 
 #[inline(always)]
-fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f64>) -> (Q::Answer, Visits) {
+fn walk<const FMA: bool, S: Simd, Q: Query>(
+    simd: S,
+    tree: &SphereTree,
+    ray: &Ray,
+    within: Range<f64>,
+) -> (Q::Answer, Visits) {
     let mut visits = Visits::default();
     if !is_open(&within) || tree.is_empty() {
         return (Q::Answer::default(), visits);
@@ -388,65 +459,55 @@ fn walk<const FMA: bool, Q: Query>(tree: &SphereTree, ray: &Ray, within: Range<f
     let ray = &PreparedRay::new(ray, within);
     let mut segment = Segment::new(ray, tree.scale);
     let mut query = Q::begin(&mut Q::Answer::default());
-    let mut stack = [(0.0, Child { first: 0, count: 0 }); DEPTH];
-    let mut height = 0;
-    let mut at = tree.root;
-    loop {
+    // Each part with where the ray enters it, the nearest last.
+    let mut stack = [(f64::NEG_INFINITY, tree.root); STACK];
+    let mut height = 1;
+    while height > 0 && !query.is_settled() {
+        height -= 1;
+        let (enter, at) = stack[height];
+        if enter > segment.last {
+            continue;
+        }
         if at.count == 0 {
             let node = &tree.nodes[at.first as usize];
-            visits.nodes += 2;
-            let (a, b) = (segment.pass::<FMA>(node, 0), segment.pass::<FMA>(node, 1));
-            match (segment.enter(&a), segment.enter(&b)) {
-                (Some(enter_a), Some(enter_b)) => {
-                    let (near, far, enter) = if b.nearest < a.nearest { (1, 0, enter_a) } else { (0, 1, enter_b) };
-                    stack[height] = (enter, node.halves[far]);
-                    height += 1;
-                    at = node.halves[near];
-                    continue;
+            visits.nodes += node.len;
+            let (mut met, enter) = segment.meet(simd, node);
+            let base = height;
+            while met != 0 {
+                let side = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let enter = larger(enter[side], f64::NEG_INFINITY);
+                let mut hole = height;
+                while hole > base && stack[hole - 1].0 < enter {
+                    stack[hole] = stack[hole - 1];
+                    hole -= 1;
                 }
-                (Some(_), None) => {
-                    at = node.halves[0];
-                    continue;
+                let child = node.children[side];
+                stack[hole] = (enter, child);
+                height += 1;
+                if child.count == 0 {
+                    prefetch_lines(tree.nodes.as_ptr().wrapping_add(child.first as usize), 6);
                 }
-                (None, Some(_)) => {
-                    at = node.halves[1];
-                    continue;
-                }
-                (None, None) => {}
             }
-        } else {
-            let places = at.first as usize..(at.first + at.count) as usize;
-            visits.tests += places.len();
-            let spheres = leaves.spheres.len();
-            for place in places.start..places.end.min(spheres) {
-                query.meet::<FMA, _>(&leaves.spheres[place], place, leaves, ray);
-            }
-            for place in places.start.max(spheres)..places.end {
-                query.meet::<FMA, _>(&leaves.triangles[place - spheres], place, leaves, ray);
-            }
-            if query.is_settled() {
-                break;
-            }
-            segment.shorten(query.limit());
+            continue;
         }
-        // Back to the nearest part that is still of interest.
-        loop {
-            if height == 0 {
-                return (query.answer(leaves, ray), visits);
-            }
-            height -= 1;
-            let (enter, child) = stack[height];
-            if enter <= segment.last {
-                at = child;
-                break;
-            }
+        let places = at.first as usize..(at.first + at.count) as usize;
+        visits.tests += places.len();
+        let spheres = leaves.spheres.len();
+        for place in places.start..places.end.min(spheres) {
+            query.meet::<FMA, _>(&leaves.spheres[place], place, leaves, ray);
         }
+        for place in places.start.max(spheres)..places.end {
+            query.meet::<FMA, _>(&leaves.triangles[place - spheres], place, leaves, ray);
+        }
+        segment.shorten(query.limit());
     }
     (query.answer(leaves, ray), visits)
 }
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::Level;
     use glam::DVec3;
     use oracle::Random;
 
@@ -461,6 +522,12 @@ mod tests {
     /// Three well-separated rows of ten.
     fn rows() -> Vec<Sphere> {
         (0..30).map(|i| ball(f64::from(i % 10), 1e3 * f64::from(i / 10), 0.0, 0.25)).collect()
+    }
+
+    /// A node of three parts with the same sphere.
+    fn all_alike(center: DVec3, radius: f64) -> Node {
+        let center = center.to_array().map(|x| [x; WIDTH]);
+        Node { center, radius: [radius; WIDTH], children: [Child { first: 0, count: 1 }; WIDTH], len: 3 }
     }
 
     #[test]
@@ -490,19 +557,28 @@ mod tests {
         // The spheres of the nodes are those of the parts.
         let tree = SphereTree::new(spheres, vec![]);
         let root = &tree.nodes[tree.root.first as usize];
-        let first = enclosing_sphere(&rows()[..15]).unwrap().sphere;
+        let first = enclosing_sphere(&rows()[..7]).unwrap().sphere;
         assert!((root.radius[0] / tree.scale / first.radius() - 1.0).abs() < 1e-14, "{root:?} {first:?}");
     }
 
     #[test]
-    fn a_ray_past_everything_tests_two_spheres() {
-        let tree = SphereTree::new(rows(), vec![]);
-        let ray = Ray::new(DVec3::new(0.0, 1e4, 0.0), DVec3::X).unwrap();
-        assert_eq!(tree.closest_counted(&ray, AHEAD), (None, Visits { nodes: 2, tests: 0 }));
+    fn nodes_at_the_bottom_are_full() {
+        // Halved seven times, into 128 parts of eight.
+        let spheres = (0..1024).map(|i| ball(f64::from(i), 0.0, 0.0, 1e-3)).collect();
+        let tree = SphereTree::new(spheres, vec![]);
+        let count = |len: usize| tree.nodes.iter().filter(|node| node.len == len).count();
+        assert_eq!((count(8), count(2), tree.nodes.len()), (128 + 16 + 2, 1, 147));
     }
 
     #[test]
-    fn the_nearer_half_comes_first_and_hides_the_other() {
+    fn a_ray_past_everything_tests_the_spheres_of_the_root() {
+        let tree = SphereTree::new(rows(), vec![]);
+        let ray = Ray::new(DVec3::new(0.0, 1e4, 0.0), DVec3::X).unwrap();
+        assert_eq!(tree.closest_counted(&ray, AHEAD), (None, Visits { nodes: 4, tests: 0 }));
+    }
+
+    #[test]
+    fn the_nearest_part_comes_first_and_hides_the_others() {
         for direction in [1.0, -1.0] {
             let tree = SphereTree::sorted(rows(), vec![]);
             let ray = Ray::new(DVec3::new(1.0, -1e4 * direction, 0.0), DVec3::Y * direction).unwrap();
@@ -579,20 +655,17 @@ mod tests {
             let (Ok(ray), sphere) = (Ray::new(origin, direction), Sphere::new(center, radius).unwrap()) else {
                 continue;
             };
-            let node = Node {
-                center: center.to_array().map(|x| [x; 2]),
-                radius: [radius; 2],
-                halves: [Child { first: 0, count: 1 }; 2],
-            };
+            let node = all_alike(center, radius);
             let Some(t) = sphere.closest(&ray, f64::NEG_INFINITY..f64::INFINITY) else { continue };
             met += 1;
             // The range is `start <= t < end`, and a hit of equal `t` may still win.
             for (start, last) in [(f64::NEG_INFINITY, t), (t, f64::INFINITY), (t, t.next_up())] {
                 let prepared = PreparedRay::new(&ray, start..last);
                 let segment = Segment::new(&prepared, 1.0);
-                for passage in [segment.pass::<false>(&node, 0), segment.pass::<true>(&node, 1)] {
-                    let enter = segment.enter(&passage);
-                    assert!(enter.is_some_and(|enter| enter <= segment.last), "{sphere:?} {ray:?} {t} {enter:?}");
+                for level in [Level::new(), Level::baseline()] {
+                    let (met, enter) = dispatch!(level, simd => segment.meet(simd, &node));
+                    assert_eq!(met, 0b111, "{level:?} {sphere:?} {ray:?} {t}");
+                    assert!(enter[0] <= segment.last, "{level:?} {sphere:?} {ray:?} {t} {enter:?}");
                 }
             }
         }
@@ -605,9 +678,9 @@ mod tests {
             let ray = Ray::new(DVec3::splat(-far), DVec3::ONE).unwrap();
             let prepared = PreparedRay::new(&ray, AHEAD);
             let segment = Segment::new(&prepared, 1.0);
-            let node = Node { center: [[0.0; 2]; 3], radius: [1.0; 2], halves: [Child { first: 0, count: 1 }; 2] };
-            for passage in [segment.pass::<false>(&node, 0), segment.pass::<true>(&node, 1)] {
-                assert!(segment.enter(&passage).is_some(), "from {far}");
+            for level in [Level::new(), Level::baseline()] {
+                let (met, _) = dispatch!(level, simd => segment.meet(simd, &all_alike(DVec3::ZERO, 1.0)));
+                assert_eq!(met, 0b111, "{level:?} from {far}");
             }
         }
     }
