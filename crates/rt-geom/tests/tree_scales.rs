@@ -220,3 +220,29 @@ fn compare(name: &str, list: List, random: &mut Random, rays: usize) {
         }
     }
 }
+
+/// A hit behind the origin by less than half of the smallest double has the parameter `-0`, which a range from `-0` on
+/// holds. Another ray of the batch, going across, must not drop it. Things are some units of the smallest double large.
+#[test]
+fn a_hit_behind_the_origin_that_rounds_to_minus_zero_is_in_a_range_from_there_on() {
+    let tiny = f64::from_bits(1);
+    let mut spheres: Vec<Sphere> = (0..20).map(|i| ball(-16.0 * f64::from(i) * tiny * DVec3::X, 4.0 * tiny)).collect();
+    spheres.extend((0..20).map(|i| ball(DVec3::new(-20.0 - 3.0 * f64::from(i), 10.0, 10.0), 1.0)));
+    let list = List { spheres, triangles: vec![] };
+    let tree = Bvh::new(list.spheres.clone(), vec![]);
+    let origin = 7.0 * tiny * DVec3::X;
+    let directions = (0..64).map(|i| DVec3::new(f64::from(i % 2 * 8), 0.0, 1.0 + 1e-3 * f64::from(i)));
+    let rays: Vec<Ray> = directions.map(|direction| Ray::new(origin, direction).unwrap()).collect();
+    for start in [-0.0, 0.0] {
+        let within = start..f64::INFINITY;
+        let mut batch = vec![None; rays.len()];
+        tree.closest_batch(&rays, within.clone(), &mut batch);
+        for (i, ray) in rays.iter().enumerate() {
+            let expected = list.closest(ray, within.clone());
+            let hit = i % 2 == 1 && start.is_sign_negative();
+            assert_eq!(expected.map(|hit| hit.t.to_bits()), hit.then_some((-0f64).to_bits()), "{start} {ray:?}");
+            assert_eq!(tree.closest(ray, within.clone()), expected, "{start} {ray:?}");
+            assert_eq!(batch[i], expected, "batch: {start} {ray:?}");
+        }
+    }
+}

@@ -63,7 +63,8 @@ pub(super) fn closest_batch<S: Simd>(
     within: &Range<f64>,
     answers: &mut [Option<Hit>],
 ) {
-    if !(within.start >= 0.0 && is_open(within)) {
+    // A range from -0 on holds hits behind the origin that round to -0, which the boxes of a tile do not count on.
+    if !(within.start.is_sign_positive() && is_open(within)) {
         tree.batch::<Closest>(rays, within, answers);
         return;
     }
