@@ -70,6 +70,7 @@ const FILES: &[File] = &[
             ("SHORTEST", "rt-geom/src/bvh/crown.rs", "const SHORTEST: f64 = ", ";"),
         ],
     ),
+    ("CrownBox", &[]),
     (
         "Determinant",
         &[

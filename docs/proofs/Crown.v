@@ -56,26 +56,26 @@ Proof.
   replace (RN (/ d)) with ((RN (/ d) - / d) + / d) by ring. eapply Rle_trans; [apply Rabs_triang|].
   rewrite u_val in E. pose proof (Rabs_pos (/ d)). lra.
 Qed.
-(* Nothing overflows. *)
+(* Nothing overflows, with planes that are moved outward. *)
 Theorem FARTHEST_holds : forall plane o d,
-  Rabs plane <= FARTHEST -> Rabs o <= FARTHEST -> SHORTEST < Rabs d <= bp 100 ->
-  Rabs (RN (RN (plane - o) * RN (/ d))) <= bp 904.
+  Rabs plane <= 2 * FARTHEST -> Rabs o <= 2 * FARTHEST -> SHORTEST < Rabs d <= bp 100 ->
+  Rabs (RN (RN (plane - o) * RN (/ d))) <= bp 905.
 Proof.
   intros plane o d Hp Ho Hd. destruct (SHORTEST_holds d Hd) as [_ B]. unfold FARTHEST in *.
-  pose proof (RN_err (plane - o)) as E. assert (P : Rabs (plane - o) <= 2 * bp 400).
+  pose proof (RN_err (plane - o)) as E. assert (P : Rabs (plane - o) <= 4 * bp 400).
   { unfold Rminus. eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_Ropp. lra. }
   assert (T : bp (-1075) <= bp 400) by (apply bp_le; lia). set (m := RN (plane - o)) in *.
-  assert (M : Rabs m <= bp 402).
-  { change 402%Z with (2 + 400)%Z. rewrite bp_add. simpl (bp 2).
+  assert (M : Rabs m <= bp 403).
+  { change 403%Z with (3 + 400)%Z. rewrite bp_add. simpl (bp 3).
   replace m with ((m - (plane - o)) + (plane - o)) by ring.
     eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in E. pose proof (bp_pos 400). lra. }
   pose proof (RN_err (m * RN (/ d))) as E2. set (r := RN (/ d)) in *.
-  assert (MR : Rabs (m * r) <= bp 903).
-  { rewrite Rabs_mult. change 903%Z with (402 + 501)%Z. rewrite bp_add. apply Rmult_le_compat; auto using Rabs_pos. }
-  assert (T2 : bp (-1075) <= / 2 * bp 903).
-  { apply Rle_trans with (bp (-1 + 903)); [apply bp_le; lia|]. rewrite bp_add. simpl (bp (-1)). lra. }
-  change 904%Z with (1 + 903)%Z. rewrite bp_add, bp_1. replace (RN (m * r)) with ((RN (m * r) - m * r) + m * r) by ring.
-  eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in E2. pose proof (bp_pos 903). lra.
+  assert (MR : Rabs (m * r) <= bp 904).
+  { rewrite Rabs_mult. change 904%Z with (403 + 501)%Z. rewrite bp_add. apply Rmult_le_compat; auto using Rabs_pos. }
+  assert (T2 : bp (-1075) <= / 2 * bp 904).
+  { apply Rle_trans with (bp (-1 + 904)); [apply bp_le; lia|]. rewrite bp_add. simpl (bp (-1)). lra. }
+  change 905%Z with (1 + 904)%Z. rewrite bp_add, bp_1. replace (RN (m * r)) with ((RN (m * r) - m * r) + m * r) by ring.
+  eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in E2. pose proof (bp_pos 904). lra.
 Qed.
 
 (* ---- Error ---- *)
