@@ -233,6 +233,7 @@ const FILES: &[File] = &[
             ("AWAY_ERROR", "rt-geom/src/enclosing/certify.rs", "REACH_ERROR + bend + ", " * (away + U * size);"),
         ],
     ),
+    ("PairCenter", &[]),
     (
         "Polygon",
         &[(
