@@ -226,6 +226,14 @@ const FILES: &[File] = &[
         ],
     ),
     (
+        "LowerBound",
+        &[
+            ("BALANCE", "rt-geom/src/enclosing/certify.rs", "const BALANCE: f64 = ", ";"),
+            ("MEAN_ERROR", "rt-geom/src/enclosing/certify.rs", "let doubt = ", " * mean.abs();"),
+            ("BOUND_ERROR", "rt-geom/src/enclosing/certify.rs", "let below = mean - slack * (1.0 + ", ");"),
+        ],
+    ),
+    (
         "Pair",
         &[
             ("PAIR_ERROR", "rt-geom/src/enclosing/certify.rs", "const PAIR_ERROR: f64 = ", ";"),
@@ -531,7 +539,7 @@ const NUMBERS: &[Number] = &[
     ("numerics.md", ["γ' by ", " D E/sum error"], "rt-geom/src/triangle/finish.rs", ["error = ", " * (self.crossing"]),
     ("numerics.md", ["offset, `", "u + 2|e|"], "rt-geom/src/enclosing/certify.rs", ["total + ", " * U + 2.0 * step"]),
     ("numerics.md", ["`16u + ", "|e|/min|v|`"], "rt-geom/src/enclosing/certify.rs", ["* U + ", " * step.length"]),
-    ("numerics.md", ["`L = m - ", "M|g|`"], "rt-geom/src/enclosing/certify.rs", ["mean + ", " * most * pull"]),
+    ("numerics.md", ["`L = m - ", "M|g|`"], "rt-geom/src/enclosing/certify.rs", ["mean + (", " * most * pull"]),
     ("numerics.md", ["2 M G) <= ", " G/b"], "rt-geom/src/enclosing/certify.rs", ["gap * (", " / BALANCE"]),
     ("numerics.md", ["slack times `1 + ", "u`"], "rt-geom/src/enclosing/certify.rs", ["slack * (1.0 + ", " * U)"]),
     ("numerics.md", ["of the pull, `", "u²`"], "rt-geom/src/enclosing/refine.rs", ["round() + ", " * U * U;"]),

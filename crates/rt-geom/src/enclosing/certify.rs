@@ -266,9 +266,11 @@ fn lower_bound<S: Simd>(simd: S, tangent: &Tangent<f64>, reach: &Reach<S>, step:
         + (weight * (dz + step.by.z)).reduce_sum().abs();
     let nearest = reach.distance.reduce_min();
     let pull = pull / total + 16.0 * U + 2.0 * step.length / nearest;
-    let gap = (most - base) - mean + 2.0 * most * pull;
+    // What the mean errs by, and its own roundings: relative to it, since reaches that differ widen the gap.
+    let doubt = 16.0 * U * mean.abs();
+    let gap = (most - base) - mean + (2.0 * most * pull + doubt);
     let far = gap * (0.5 / BALANCE) + most * BALANCE;
-    let slack = step.error.reduce_max() + pull * far + 8.0 * U * mean.abs();
+    let slack = step.error.reduce_max() + pull * far + doubt;
     let below = mean - slack * (1.0 + 16.0 * U);
     let sum = base + below;
     sum - if below - (sum - base) < 0.0 { sum * SPACING } else { 0.0 }
