@@ -42,9 +42,10 @@ KERNELS = {
         exact/dyadic exact/enclosure exact/error_free exact/fixed exact/radius exact/round exact/scaling exact/wide""",
     "crates/rt-geom/src": """ray plane crossings questions lanes leaf sphere_tree sphere/exact sphere/filter
         sphere/finish sphere/lanes sphere/mod triangle/exact triangle/filter triangle/finish triangle/lanes
-        triangle/locate triangle/mod surface/exact surface/filter surface/finish surface/mod enclosing/certify
-        enclosing/exact enclosing/extreme enclosing/mod enclosing/nodes enclosing/pivot enclosing/refine enclosing/scan
-        enclosing/tangent bvh/crown bvh/cull bvh/node bvh/walk bvh/batch bvh/tile bvh/tiles""",
+        triangle/locate triangle/mod surface/exact surface/filter surface/finish surface/mod enclosing/apart
+        enclosing/certify enclosing/exact enclosing/extreme enclosing/mod enclosing/nodes enclosing/pivot
+        enclosing/refine enclosing/scan enclosing/tangent bvh/crown bvh/cull bvh/node bvh/walk bvh/batch bvh/tile
+        bvh/tile_walk bvh/tiles""",
     "crates/rt-shade/src": """arctangent double_word mapping phong phong_batch power texture certified/arctangent
         certified/mod certified/phong certified/power certified/texture""",
     "figures/src": "certify seen",

@@ -155,10 +155,57 @@ Proof.
   apply Rabs_le_inv in P. lra.
 Qed.
 
+(* A number is computed in some order: by a term with the monomials of another and as many roundings. *)
+Definition in_some_order n least t z := exists t', plain t' z /\ bounded t' /\ exact t' = exact t /\ size t' = size
+  t /\
+  Z.of_nat (count t') = n /\ (low t' <= least)%Z.
+(* One ray (`filter`), eight rays with a triangle each and eight of one origin (`lanes`): sums of dot products from
+  the
+   other end, and d . (f x e) for e . (d x f). *)
+Definition tlane x1 x2 x3 y1 y2 y3 := Add (Mul x1 y1) (Add (Mul x2 y2) (Mul x3 y3)).
+Ltac order t := exists t; split; [assumption|]; unfold tlane; terms; split; [cbn [bounded]; repeat split;
+  assumption|];
+  split; [cbn [exact]; ring|]; split; [cbn [size]; ring|]; split; [vm_compute; reflexivity | vm_compute;
+    discriminate].
+Theorem sums_in_order : forall z, plain tsum z \/ plain (tlane te1 te2 te3 tp1 tp2 tp3) z \/
+  plain (tlane td1 td2 td3 (tminor tf2 te3 tf3 te2) (tminor tf3 te1 tf1 te3) (tminor tf1 te2 tf2 te1)) z ->
+  in_some_order 7 (-600) tsum z.
+Proof.
+  intros z H. destruct pieces as (A1 & A2 & A3 & _). destruct H as [H|[H|H]].
+  - order tsum.
+  - order (tlane te1 te2 te3 tp1 tp2 tp3).
+  - order (tlane td1 td2 td3 (tminor tf2 te3 tf3 te2) (tminor tf3 te1 tf1 te3) (tminor tf1 te2 tf2 te1)).
+Qed.
+Theorem weights_in_order : forall z, plain tv z \/ plain (tlane ts1 ts2 ts3 tp1 tp2 tp3) z \/
+  plain (tlane td1 td2 td3 (tminor tf2 ts3 tf3 ts2) (tminor tf3 ts1 tf1 ts3) (tminor tf1 ts2 tf2 ts1)) z ->
+  in_some_order 7 (-600) tv z.
+Proof.
+  intros z H. destruct pieces as (A1 & A2 & A3 & _). destruct H as [H|[H|H]].
+  - order tv.
+  - order (tlane ts1 ts2 ts3 tp1 tp2 tp3).
+  - order (tlane td1 td2 td3 (tminor tf2 ts3 tf3 ts2) (tminor tf3 ts1 tf1 ts3) (tminor tf1 ts2 tf2 ts1)).
+Qed.
+Theorem others_in_order : forall z, plain tw z \/ plain (tlane td1 td2 td3 tq1 tq2 tq3) z -> in_some_order 7 (-600)
+  tw z.
+Proof.
+  intros z H. destruct pieces as (A1 & A2 & A3 & _). destruct H as [H|H].
+  - order tw.
+  - order (tlane td1 td2 td3 tq1 tq2 tq3).
+Qed.
+Theorem heights_in_order : forall z, plain theight z \/ plain (tlane tf1 tf2 tf3 tq1 tq2 tq3) z ->
+  in_some_order 8 (-546) theight z.
+Proof.
+  intros z H. destruct H as [H|H].
+  - order theight.
+  - order (tlane tf1 tf2 tf3 tq1 tq2 tq3).
+Qed.
+
 Section Filter.
 (* as computed: the volumes, the bound *)
 Variables sum v w error edge : R.
-Hypotheses (Hsum : plain tsum sum) (Hv : plain tv v) (Hw : plain tw w) (Herror : plain terror error)
+Hypotheses (Hsum : in_some_order 7 (-600) tsum sum) (Hv : in_some_order 7 (-600) tv v) (Hw : in_some_order 7 (-600)
+  tw w)
+  (Herror : plain terror error)
   (Hedge : plain tedge edge) (Hshort : SHORTEST < edge).
 
 Lemma terror_value : exact terror = ERROR * E * (E + S) * reach /\ size terror = ERROR * E * (E + S) * reach.
@@ -188,13 +235,15 @@ Proof.
       apply Rle_trans with (u * bp (-460)); [unfold u; rewrite <- bp_add; apply bp_le; lia|]. unfold ERROR.
       pose proof u_pos. pose proof (bp_pos (-460)). apply Rmult_le_compat; lra. }
   eapply Rle_trans; [|exact Y]. unfold ERROR.
-  replace ((1 - 21 * u) * (18 * u * E * (E + S) * reach)) with ((18 - 378 * u) * (u * (reach * (E * (E + S))))) by ring.
+  replace ((1 - 21 * u) * (18 * u * E * (E + S) * reach)) with ((18 - 378 * u) * (u * (reach * (E * (E + S))))) by
+    ring.
   replace ((18 - / 1000) * u * (reach * (E * (E + S)))) with ((18 - / 1000) * (u * (reach * (E * (E + S))))) by ring.
   apply Rmult_le_compat_r; [pose proof (bp_pos (-460)); lra | rewrite u_val; lra].
 Qed.
 
 (* Sum, v and w are within the bound as computed: their signs are certain where they exceed it. *)
-Lemma volume_errors : Rabs (sum - Sum) <= (7 + / 500) * u * (reach * (E * E)) + / 1000 * u * (reach * (E * (E + S))) /\
+Lemma volume_errors : Rabs (sum - Sum) <= (7 + / 500) * u * (reach * (E * E)) + / 1000 * u * (reach * (E * (E +
+  S))) /\
   Rabs (v - V) <= (7 + / 500) * u * (reach * (S * E)) + / 1000 * u * (reach * (E * (E + S))) /\
   Rabs (w - W) <= (7 + / 500) * u * (reach * (S * E)) + / 1000 * u * (reach * (E * (E + S))).
 Proof.
@@ -202,19 +251,17 @@ Proof.
   destruct error_low as [_ X]. 
   assert (T : forall k, (k <= -600)%Z -> bp k <= / 1000 * u * (reach * (E * (E + S)))).
   { intros k K. pose proof (bp_part k (-460) ltac:(lia)). pose proof (bp_pos (-460)). lra. }
-  assert (G : forall t z m, plain t z -> bounded t -> Z.of_nat (count t) = 7%Z -> (low t <= -600)%Z -> size t <= m ->
+  assert (G : forall t z m, in_some_order 7 (-600) t z -> size t <= m ->
     Rabs (z - exact t) <= (7 + / 500) * u * m + / 1000 * u * (reach * (E * (E + S)))).
-  { intros t z m H B N L M. pose proof (plain_error_at t z 7 (low t) H B N eq_refl ltac:(lia)) as P.
-    pose proof (T _ L). destruct (top_ok t B). pose proof (Rabs_pos (exact t)).
-    assert ((7 + / 1000) * u * size t <= (7 + / 500) * u * m) by (pose proof u_pos; apply Rmult_le_compat; try lra;
+  { intros t z m (t' & H & B & Ex & Sz & N & L) M. rewrite <- Ex. rewrite <- Sz in M.
+    pose proof (plain_error_at t' z 7 (low t') H B N eq_refl ltac:(lia)) as P.
+    pose proof (T _ L). destruct (top_ok t' B). pose proof (Rabs_pos (exact t')).
+    assert ((7 + / 1000) * u * size t' <= (7 + / 500) * u * m) by (pose proof u_pos; apply Rmult_le_compat; try lra;
       nra). lra. }
   split; [|split].
-  - apply (G tsum); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute;
-    reflexivity | vm_compute; discriminate].
-  - apply (G tv); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute;
-    reflexivity | vm_compute; discriminate].
-  - apply (G tw); try assumption; [terms; cbn [bounded]; repeat split; assumption | vm_compute;
-    reflexivity | vm_compute; discriminate].
+  - exact (G tsum sum _ Hsum Z1).
+  - exact (G tv v _ Hv Z2).
+  - exact (G tw w _ Hw Z3).
 Qed.
 
 (* The three volumes and their sum, u = (sum - v) - w rounded twice more, are off by at most 18 u D E (E + S) as
@@ -223,7 +270,8 @@ Theorem ERROR_holds : F sum -> F v -> F w ->
   Rabs (sum - Sum) <= error /\ Rabs (v - V) <= error /\ Rabs (w - W) <= error /\
   Rabs (RN (RN (sum - v) - w) - (Sum - V - W)) <= error.
 Proof.
-  intros F1 F2 F3. destruct pieces as (A1 & A2 & A3 & A4 & _ & _ & SP & EP & RR). destruct sizes as (Z1 & Z2 & Z3 & _).
+  intros F1 F2 F3. destruct pieces as (A1 & A2 & A3 & A4 & _ & _ & SP & EP & RR). destruct sizes as (Z1 & Z2 & Z3 &
+    _).
   destruct error_low as [L X]. destruct volume_errors as (P1 & P2 & P3).
   pose proof (RN_diff sum v F1 F2) as Q1. pose proof (RN_diff (RN (sum - v)) w (RN_F _) F3) as Q2.
   assert (B1 : Rabs Sum <= reach * (E * E)).
@@ -284,13 +332,14 @@ Proof.
   replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold
     ERROR; ring).
   assert ((7 + / 1000) * u * size tsum <= (7 + / 1000) * (u * (reach * (E * E)))).
-  { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
+  { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos |
+    assumption]. }
   set (G := u * (reach * (E * E))) in *. clearbody G. rewrite u_val in *. lra.
 Qed.
 
 (* The height against 18 u E^2 (E + S): the spread as computed, times the edge as computed. *)
 Theorem height : forall h spread edge,
-  plain theight h -> plain tspread spread -> plain tedge edge -> SHORTEST < edge ->
+  in_some_order 8 (-546) theight h -> plain tspread spread -> plain tedge edge -> SHORTEST < edge ->
   Rabs (h - Height) <= RN (spread * edge).
 Proof.
   intros h spread edge Hs Hp Hedge L. destruct pieces as (A1 & A2 & A3 & A4 & _ & _ & SP & EP & RR).
@@ -302,9 +351,9 @@ Proof.
   { apply Rle_trans with (u * (bp (-151) * (bp (-151) * bp (-151)))).
     - unfold u. rewrite <- !bp_add. apply bp_le. lia.
     - apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
-  assert (BS : bounded theight) by (terms; cbn [bounded]; repeat split; assumption).
-  pose proof (plain_error_at theight h 8 (low theight) Hs BS eq_refl eq_refl ltac:(lia)) as P.
-  assert (LT : bp (low theight) <= / 1000000000000 * bp (-506)) by (apply bp_part12; vm_compute; discriminate).
+  destruct Hs as (t' & Hs & BS & Ex & Sz & N & Lo).
+  pose proof (plain_error_at t' h 8 (low t') Hs BS N eq_refl ltac:(lia)) as P. rewrite Ex, Sz in P.
+  assert (LT : bp (low t') <= / 1000000000000 * bp (-506)) by (apply bp_part12; lia).
   assert (Y : (1 - 21 * u) * (ERROR * E * (E + S)) <= spread).
   { apply bound_low with (t := tspread); auto.
     - terms. cbn [bounded]. repeat split; auto. unfold ERROR. constant.
@@ -414,7 +463,8 @@ Proof.
   replace ((1 - 21 * u) * (ERROR * E * E * reach)) with ((1 - 21 * u) * (18 * (u * (reach * (E * E))))) by (unfold
     ERROR; ring).
   assert ((7 + / 1000) * u * size tslope <= (7 + / 1000) * (u * (reach * (E * E)))).
-  { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos | assumption]. }
+  { rewrite Rmult_assoc. apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [apply Rlt_le, u_pos |
+    assumption]. }
   set (G := u * (reach * (E * E))) in *. clearbody G. rewrite u_val in *. lra.
 Qed.
 End Triangle.
@@ -444,7 +494,8 @@ Proof.
   assert (B : bounded theight_of_plane) by (unfold theight_of_plane, tdot, tminor; cbn [bounded]; repeat split;
     assumption).
   pose proof (plain_error_at _ h 8 (low theight_of_plane) Hh B eq_refl eq_refl ltac:(lia)) as Q.
-  assert (LT : bp (low theight_of_plane) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute; discriminate).
+  assert (LT : bp (low theight_of_plane) <= / 1000000000000 * UNDERFLOW) by (apply bp_part12; vm_compute;
+    discriminate).
   assert (U0 : 0 < UNDERFLOW) by apply bp_pos.
   assert (Z : size theight_of_plane <= E * (E * S)).
   { unfold theight_of_plane, tdot, tminor. cbn [size]. fold e1 e2 e3 f1 f2 f3 s1 s2 s3.
