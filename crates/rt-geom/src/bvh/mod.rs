@@ -76,11 +76,19 @@ const CACHED: usize = 1 << 18;
 
 /// Whether rays together are faster, in a tree of so many primitives.
 fn flies(level: Level, count: usize) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    let is_wide = level.as_avx512().is_some();
-    #[cfg(not(target_arch = "x86_64"))]
-    let is_wide = false;
-    is_wide || count > CACHED
+    is_wide(level) || count > CACHED
+}
+
+/// Whether vectors have 512 bits.
+#[cfg(target_arch = "x86_64")]
+fn is_wide(level: Level) -> bool {
+    level.as_avx512().is_some()
+}
+
+/// Whether vectors have 512 bits.
+#[cfg(not(target_arch = "x86_64"))]
+fn is_wide(_: Level) -> bool {
+    false
 }
 
 impl Bvh {
