@@ -20,8 +20,8 @@ use crate::{Ray, Sphere, Triangle, Visits};
 /// A part of the tree that is still to be visited: the key of its entry above its [`Child`].
 pub(super) type Pending = u64;
 
-/// Entries of a stack with which a walk begins; [`Bvh::stack`] tells how many it can need. To clear more than that takes
-/// as long as a tenth of a ray.
+/// Entries of a stack with which a walk begins; [`Bvh::stack`] tells how many it can need. To clear 128 of them took 7 %
+/// of the time of a camera's ray to 100,000 triangles.
 const SMALL_STACK: usize = 48;
 
 /// With more primitives than this, what a walk reads is no longer in the cache nearby, and is asked for early.
@@ -384,8 +384,8 @@ mod tests {
         let tree = Bvh::new(balls.clone(), vec![]);
         assert!(tree.stack > SMALL_STACK, "{}", tree.stack);
         for _ in 0..20 {
-            let ray = Ray::new(20.0 * random.direction(), random.direction()).unwrap();
-            let ray = Ray::new(ray.origin(), 0.1 * ray.direction() - ray.origin()).unwrap();
+            let origin = 20.0 * random.direction();
+            let ray = Ray::new(origin, 0.1 * random.direction() - origin).unwrap();
             let expected = balls.iter().filter_map(|ball| ball.closest(&ray, AHEAD)).min_by(f64::total_cmp);
             assert_eq!(tree.closest(&ray, AHEAD).map(|hit| hit.t), expected);
         }
