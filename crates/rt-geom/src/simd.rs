@@ -2,8 +2,10 @@
 
 use std::ops::Mul;
 
-#[cfg(not(target_feature = "sse2"))]
+#[cfg(not(any(target_feature = "sse2", all(target_arch = "aarch64", target_feature = "neon"))))]
 use fearless_simd::Fallback as Baseline;
+#[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+use fearless_simd::Neon as Baseline;
 #[cfg(target_feature = "sse2")]
 use fearless_simd::Sse2 as Baseline;
 use fearless_simd::{Simd, prelude::*};
@@ -11,8 +13,8 @@ use rt_math::exact::two_prod_with;
 
 /// Compiles a kernel for each instruction set that earns its copy, and runs the copy for the processor.
 ///
-/// On x86 these are AVX-512, AVX2 (with fused multiply-add) and the baseline, SSE2; elsewhere those of `fearless_simd`.
-/// All give the same bits. There are two forms:
+/// On x86 these are AVX-512, AVX2 (with fused multiply-add) and the baseline, SSE2; on
+/// 64-bit Arm NEON alone. All give the same bits. There are two forms:
 ///
 /// - `dispatch!(level, simd => expression)` runs an expression with the instructions of a `Level`, of which every
 ///   kernel in the expression takes `simd`. What the expression uses passes through memory.
@@ -35,23 +37,14 @@ macro_rules! dispatch {
                     $kernel::<true, _>(simd, $($argument),*)
                 }
             );
-            fearless_simd::kernel!(
-                #[inline]
-                fn neon(simd: Neon, $($argument: $kind),*) -> $result {
-                    $kernel::<true, _>(simd, $($argument),*)
-                }
-            );
             #[inline(never)]
             fn plain($($argument: $kind),*) -> $result {
-                $kernel::<false, _>($crate::simd::baseline(), $($argument),*)
+                const FMA: bool = cfg!(all(target_arch = "aarch64", target_feature = "neon"));
+                $kernel::<FMA, _>($crate::simd::baseline(), $($argument),*)
             }
             #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
             if rt_math::exact::has_fma() && let Some(simd) = fearless_simd::Level::new().as_avx2() {
                 return avx2(simd, $($argument),*);
-            }
-            #[cfg(target_arch = "aarch64")]
-            if let Some(simd) = fearless_simd::Level::new().as_neon() {
-                return neon(simd, $($argument),*);
             }
             plain($($argument),*)
         }
@@ -81,7 +74,22 @@ macro_rules! dispatch {
                 )
             }
         }
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "x86")))]
+        #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+        {
+            // The baseline is the only level, and others would take as long to compile.
+            let _ = level;
+            let $simd = $crate::simd::baseline();
+            fearless_simd::Simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $run,
+            )
+        }
+        #[cfg(not(any(
+            target_arch = "x86_64",
+            target_arch = "x86",
+            all(target_arch = "aarch64", target_feature = "neon")
+        )))]
         fearless_simd::dispatch!(level, $simd => $run)
     }};
 }
@@ -95,7 +103,14 @@ pub(crate) fn baseline() -> Baseline {
 }
 
 /// What every processor has for which this is compiled, without run-time checks.
-#[cfg(not(target_feature = "sse2"))]
+#[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+#[inline(always)]
+pub(crate) fn baseline() -> Baseline {
+    fearless_simd::Level::baseline().as_neon().expect("the compiler was told that it is there")
+}
+
+/// What every processor has for which this is compiled, without run-time checks.
+#[cfg(not(any(target_feature = "sse2", all(target_arch = "aarch64", target_feature = "neon"))))]
 #[inline(always)]
 pub(crate) fn baseline() -> Baseline {
     Baseline::new()
