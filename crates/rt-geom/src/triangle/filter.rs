@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use fearless_simd::Simd;
+use glam::DVec3;
 use rt_math::exact::U;
 
 use super::finish::{Refined, TriangleCrossing};
@@ -200,6 +201,7 @@ impl Candidates for Triangle {
                 if height.abs() > error {
                     return height > 0.0;
                 }
+                return self.crossed_candidate(prepared.ray, prepared.within(), f64::INFINITY).is_some();
             }
             FilterVerdict::Unsure => {}
         }
@@ -211,7 +213,7 @@ impl Candidates for Triangle {
         match filter::<FMA>(self, prepared.ray) {
             FilterVerdict::Misses => Candidate::NONE,
             FilterVerdict::Crosses(crossing) => prepared.admit(crossing.bounds(prepared.ray), limit, || {
-                self.exact_candidate(prepared.ray, prepared.within(), limit)
+                self.crossed_candidate(prepared.ray, prepared.within(), limit)
             }),
             FilterVerdict::Unsure => self.exact_candidate(prepared.ray, prepared.within(), limit),
         }
@@ -223,5 +225,64 @@ impl Triangle {
     #[inline(never)]
     fn exact_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Candidate {
         Candidate::exact(exact::closest(self, ray, within), limit)
+    }
+
+    /// For a line that surely crosses the triangle: only whether the range holds its `t` is the question, as for a ray that
+    /// begins on the triangle.
+    #[cold]
+    #[inline(never)]
+    fn crossed_candidate(&self, ray: &Ray, within: Range<f64>, limit: f64) -> Candidate {
+        let [a, b, c] = self.vertices;
+        let same = |vertex: DVec3| vertex.cmpeq(ray.origin());
+        // In a plane across an axis, with the origin in it, as floors and walls often are.
+        let t = if (same(a) & same(b) & same(c)).any() { 0.0 } else { exact::crossing_t(self, ray) };
+        Candidate::exact(holds(&within, t).then_some(t), limit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use oracle::Random;
+
+    use super::*;
+
+    /// Rays that begin on a triangle or next to it, in planes across an axis and in others, with ranges that end there:
+    /// what is offered is what the exact stage finds.
+    #[test]
+    fn a_ray_that_begins_on_a_triangle_hits_it_where_exact_arithmetic_says() {
+        let random = &mut Random::new(6);
+        let (mut at_zero, mut hits, mut misses) = (0, 0, 0);
+        for round in 0..20_000 {
+            let mut corners = [random.point(), random.point(), random.point()];
+            if round % 2 == 0 {
+                let level = random.point().x;
+                corners.iter_mut().for_each(|corner| corner[round % 3] = level);
+            }
+            let [a, b, c] = corners;
+            let Ok(triangle) = Triangle::new(a, b, c) else { continue };
+            let origin = 0.25 * a + 0.5 * b + 0.25 * c;
+            let Ok(ray) = Ray::new(origin, random.point()) else { continue };
+            let tiny = f64::from_bits(1);
+            for within in [0.0..f64::INFINITY, -0.0..0.0, -0.0..tiny, tiny..1.0, -1.0..0.0, -1.0..1.0, 1.0..0.0] {
+                let prepared = PreparedRay::new(&ray, within.clone());
+                let expected = exact::closest(&triangle, &ray, within.clone());
+                for (candidate, meets) in [
+                    (triangle.candidate::<true>(&prepared, f64::INFINITY), triangle.meets::<true>(&prepared)),
+                    (triangle.candidate::<false>(&prepared, f64::INFINITY), triangle.meets::<false>(&prepared)),
+                ] {
+                    let Candidate { low, high } = candidate;
+                    let holds = expected.map_or(low.is_nan(), |t| low <= t && t <= high);
+                    assert!(holds, "{triangle:?} {ray:?} {within:?} {candidate:?} {expected:?}");
+                    assert!(low != high || Some(low.to_bits()) == expected.map(f64::to_bits), "{low:?} {expected:?}");
+                    assert_eq!(meets, expected.is_some(), "{triangle:?} {ray:?} {within:?}");
+                }
+                match expected {
+                    Some(0.0) => at_zero += 1,
+                    Some(_) => hits += 1,
+                    None => misses += 1,
+                }
+            }
+        }
+        assert!(at_zero > 10_000 && hits > 5_000 && misses > 10_000, "{at_zero} {hits} {misses}");
     }
 }
