@@ -17,8 +17,6 @@ use rt_math::Roots;
 use rt_math::exact::Dyadic;
 use rt_math::exact::vector::{cross, difference, dot};
 
-use crate::leaf::{Leaf, Leaves, Query};
-use crate::ray::PreparedRay;
 use crate::triangle::slope_sign;
 use crate::{Ray, Shape, Side, Sphere, Triangle};
 
@@ -85,31 +83,6 @@ fn turned_delta(sphere: &Sphere, ray: &Ray) -> Ordering {
     let turned = Turned::new(ray);
     let Globe { b, c } = turned.globe(sphere);
     sign(|k| product(&b, &b, k) - turned.a(k) * &c)
-}
-
-/// A crossing of a place, as the walk finds it.
-pub(crate) struct Crossings {
-    found: Vec<Crossing>,
-}
-
-impl Query for Crossings {
-    type Answer = Vec<Crossing>;
-
-    fn begin(place: &mut Vec<Crossing>) -> Self {
-        place.clear();
-        Self { found: std::mem::take(place) }
-    }
-
-    fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
-        leaf.each_crossing(ray.ray, |pass| {
-            self.found.extend(leaves.indices(place).map(|index| Crossing::new(index, pass)));
-        });
-    }
-
-    fn answer(&mut self, leaves: &Leaves, ray: &PreparedRay) -> Vec<Crossing> {
-        sort(&mut self.found, ray.ray, |index| leaves.shape(index));
-        std::mem::take(&mut self.found)
-    }
 }
 
 /// Brings crossings of a ray into the order of the turned ray.

@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::crossings::{self, Crossing, Crossings};
+use crate::crossings::{self, Crossing};
 use crate::leaf::{Leaf, Leaves, Query, Surrounds};
 use crate::ray::{PreparedRay, is_open};
 use crate::{Bvh, Hit, Ray, Shape, Side, Sphere, Triangle, Visits};
@@ -59,6 +59,31 @@ impl Query for Hits {
 
     fn answer(&mut self, _: &Leaves, _: &PreparedRay) -> Vec<Hit> {
         sort_hits(&mut self.found);
+        std::mem::take(&mut self.found)
+    }
+}
+
+/// Gathers every crossing.
+struct Crossings {
+    found: Vec<Crossing>,
+}
+
+impl Query for Crossings {
+    type Answer = Vec<Crossing>;
+
+    fn begin(place: &mut Vec<Crossing>) -> Self {
+        place.clear();
+        Self { found: std::mem::take(place) }
+    }
+
+    fn meet<const FMA: bool, L: Leaf>(&mut self, leaf: &L, place: usize, leaves: &Leaves, ray: &PreparedRay) {
+        leaf.each_crossing(ray.ray, |pass| {
+            self.found.extend(leaves.indices(place).map(|index| Crossing::new(index, pass)));
+        });
+    }
+
+    fn answer(&mut self, leaves: &Leaves, ray: &PreparedRay) -> Vec<Crossing> {
+        crossings::sort(&mut self.found, ray.ray, |index| leaves.shape(index));
         std::mem::take(&mut self.found)
     }
 }

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, Simd, f32x16, prelude::*};
 
-use super::binary::Branch;
+use super::branch::Branch;
 use crate::bvh::node::{Child, Kind, Node, WIDTH};
 use crate::simd::dispatch;
 

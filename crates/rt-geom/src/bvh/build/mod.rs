@@ -15,6 +15,7 @@
 
 mod binary;
 mod bins;
+mod branch;
 mod collapse;
 mod item;
 mod rank;
@@ -28,9 +29,9 @@ use super::node::{Block, Blocked, Child, Frame, Kind, Node, Region, WIDTH};
 use crate::leaf::Leaves;
 use crate::simd::{dispatch, prefetch_lines};
 use crate::{Shape, Sphere, Triangle};
-use binary::Branch;
 pub(super) use binary::{Binary, items_of};
 pub(super) use bins::{BinCut, part_with_bounds, partition};
+use branch::Branch;
 use collapse::{Collapsed, collapse};
 pub(super) use item::{Extent, Item, bounds_of, shortest_sides};
 

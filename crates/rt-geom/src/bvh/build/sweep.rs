@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use fearless_simd::{Level, Simd, f32x4, f32x8, prelude::*};
 
-use super::binary::{Branch, COINCIDENT};
 use super::bins::{count, scale};
+use super::branch::{Branch, COINCIDENT};
 use super::item::{Extent, Item, bounds_of_all, half_area, middle, nothing};
 use super::rank::{MOST, ascending};
 use crate::bvh::node::WIDTH;
