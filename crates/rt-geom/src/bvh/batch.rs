@@ -12,8 +12,8 @@ use fearless_simd::{Simd, mask32x8, prelude::*, u8x32, u32x8, u32x16};
 
 use super::Bvh;
 use super::crown::{Line64, Tour};
-use super::cull::{CullRay, box_keys};
-use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
+use super::cull::{CullRay, Culled, box_keys};
+use super::node::{Blocked, Child, Kind, Region, WIDTH};
 use super::walk::{Areas, meet, next_region};
 use crate::lanes::RayLanes;
 use crate::leaf::{Closest, Query, finish};
@@ -135,10 +135,8 @@ pub(super) fn fly<S: Simd, Q: Query>(
         }
         return;
     }
-    let areas = Areas::of(tree);
     let mut waiting = Waiting { rays, only, next: 0 };
     let mut lists = Lists::NONE;
-    let fetch = tree.is_large();
     // A step writes sixteen entries, however many are met.
     let depth = tree.stack + WIDTH;
     let flight = FLIGHT.min(only.map_or(rays.len(), <[usize]>::len));
@@ -157,39 +155,8 @@ pub(super) fn fly<S: Simd, Q: Query>(
         // What the cull left in the last round.
         spheres.meet::<S, Q, Sphere>(simd, tree, &mut slots, within);
         triangles.meet::<S, Q, Triangle>(simd, tree, &mut slots, within);
-        // In a loop of its own: the loads of one slot need not wait for the stores of another.
-        let (resumed, len) = lists.take(RESUME);
-        for &at in &resumed[..len] {
-            let slot = &mut slots[usize::from(at)];
-            let child = next(slot, tree, &stacks);
-            lists.push(child.map_or(DONE, |child| child.kind() as usize), usize::from(at));
-            if fetch && let Some(child) = child {
-                areas.prefetch(child);
-            }
-        }
-        let (inner, len) = lists.take(INNER);
-        for &at in &inner[..len] {
-            let at = usize::from(at);
-            let slot = &mut slots[at];
-            let index = slot.at.index();
-            let node = &tree.nodes[index];
-            let (keys, mask) = box_keys(simd, &slot.line, &node.boxes);
-            let lanes = u32x16::from_fn(simd, word);
-            let met = ((keys & !LANE) | lanes).compress(mask);
-            let count = mask.to_bitmask().count_ones() as usize;
-            let top = slot.base + slot.height;
-            let low: &mut [u32; WIDTH] = (&mut stacks.keys[top..top + WIDTH]).try_into().expect("a slice of sixteen");
-            if count <= 8 {
-                let (first, _) = met.split();
-                descending(simd, first).store_slice(&mut low[..8]);
-            } else {
-                met.store_slice(low);
-                low[..count].sort_unstable_by(|a, b| b.cmp(a));
-            }
-            stacks.nodes[top..top + WIDTH].fill(word(index));
-            slot.height += count;
-            lists.push(RESUME, at);
-        }
+        resume(tree, &mut slots, &stacks, &mut lists);
+        descend(simd, tree, &mut slots, &mut stacks, &mut lists);
         spheres.cull(simd, &tree.sphere_blocks, SPHERES, &mut slots, &mut lists);
         for &place in &spheres.places[..spheres.len] {
             prefetch_lines(&tree.leaves.spheres[place as usize], 1);
@@ -198,31 +165,93 @@ pub(super) fn fly<S: Simd, Q: Query>(
         for &place in &triangles.places[..triangles.len] {
             prefetch_lines(&tree.leaves.triangles[place as usize], 2);
         }
-        let (done, len) = lists.take(DONE);
-        // Eight at a time, as long as others are on their way.
-        let now = if lists.len.iter().sum::<usize>() > 0 { len - len % EIGHT } else { len };
-        for &at in &done[now..len] {
-            lists.push(DONE, usize::from(at));
-        }
-        for done in done[..now].chunks(EIGHT) {
-            finish_slots(simd, tree, &mut slots, done);
-        }
-        for &at in &done[..now] {
-            let at = usize::from(at);
-            let slot = &mut slots[at];
-            if let Some(tour) = tours.get_mut(at)
-                && let Some(list) = travel(simd, slot, tour, tree)
-            {
-                lists.push(list, at);
-                continue;
-            }
-            answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
-            match launch(simd, slot, tours.get_mut(at), tree, within, &mut waiting, answers) {
-                Some(list) => lists.push(list, at),
-                None => flying -= 1,
-            }
+        flying -= land(simd, tree, &mut slots, &mut tours, &mut lists, within, &mut waiting, answers);
+    }
+}
+
+/// Takes up what is pending, where the last step is done. In a loop of its own: the loads of one slot need not wait for
+/// the stores of another.
+#[inline(always)]
+fn resume<Q: Query>(tree: &Bvh, slots: &mut [Slot<Q>], stacks: &Stacks, lists: &mut Lists) {
+    let (fetch, areas) = (tree.is_large(), Areas::of(tree));
+    let (resumed, len) = lists.take(RESUME);
+    for &at in &resumed[..len] {
+        let slot = &mut slots[usize::from(at)];
+        let child = next(slot, tree, stacks);
+        lists.push(child.map_or(DONE, |child| child.kind() as usize), usize::from(at));
+        if fetch && let Some(child) = child {
+            areas.prefetch(child);
         }
     }
+}
+
+/// Tests the nodes where slots are, and puts the children met on their stacks, farthest first.
+#[inline(always)]
+fn descend<S: Simd, Q: Query>(simd: S, tree: &Bvh, slots: &mut [Slot<Q>], stacks: &mut Stacks, lists: &mut Lists) {
+    let (inner, len) = lists.take(INNER);
+    for &at in &inner[..len] {
+        let at = usize::from(at);
+        let slot = &mut slots[at];
+        let index = slot.at.index();
+        let node = &tree.nodes[index];
+        let (keys, mask) = box_keys(simd, &slot.line, &node.boxes);
+        let lanes = u32x16::from_fn(simd, word);
+        let met = ((keys & !LANE) | lanes).compress(mask);
+        let count = mask.to_bitmask().count_ones() as usize;
+        let top = slot.base + slot.height;
+        let low: &mut [u32; WIDTH] = (&mut stacks.keys[top..top + WIDTH]).try_into().expect("a slice of sixteen");
+        if count <= 8 {
+            let (first, _) = met.split();
+            descending(simd, first).store_slice(&mut low[..8]);
+        } else {
+            met.store_slice(low);
+            low[..count].sort_unstable_by(|a, b| b.cmp(a));
+        }
+        stacks.nodes[top..top + WIDTH].fill(word(index));
+        slot.height += count;
+        lists.push(RESUME, at);
+    }
+}
+
+/// Answers the rays that have met all, and launches others from their slots; returns how many slots stay empty.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "a part of the flight, inlined into it")]
+fn land<'a, S: Simd, Q: Query>(
+    simd: S,
+    tree: &Bvh,
+    slots: &mut [Slot<'a, Q>],
+    tours: &mut [Tour],
+    lists: &mut Lists,
+    within: &Range<f64>,
+    waiting: &mut Waiting<'a>,
+    answers: &mut [Q::Answer],
+) -> usize {
+    let (done, len) = lists.take(DONE);
+    // Eight at a time, as long as others are on their way.
+    let now = if lists.len.iter().sum::<usize>() > 0 { len - len % EIGHT } else { len };
+    for &at in &done[now..len] {
+        lists.push(DONE, usize::from(at));
+    }
+    for done in done[..now].chunks(EIGHT) {
+        finish_slots(simd, tree, slots, done);
+    }
+    let mut empty = 0;
+    for &at in &done[..now] {
+        let at = usize::from(at);
+        let slot = &mut slots[at];
+        if let Some(tour) = tours.get_mut(at)
+            && let Some(list) = travel(simd, slot, tour, tree)
+        {
+            lists.push(list, at);
+            continue;
+        }
+        answers[slot.target] = slot.query.answer(&tree.leaves, &slot.ray);
+        match launch(simd, slot, tours.get_mut(at), tree, within, waiting, answers) {
+            Some(list) => lists.push(list, at),
+            None => empty += 1,
+        }
+    }
+    empty
 }
 
 /// Works out the last bits of what up to eight rays hit.
@@ -319,7 +348,7 @@ impl Survivors {
 
     /// Culls the leaf blocks where slots are.
     #[inline(always)]
-    fn cull<S: Simd, Q, B: Block>(
+    fn cull<S: Simd, Q, B: Culled>(
         &mut self,
         simd: S,
         blocks: &[B],

@@ -12,7 +12,7 @@
 use fearless_simd::{Simd, f32x4, f32x16, f64x4, mask32x16, prelude::*, u32x16};
 use glam::{DVec3, Vec3};
 
-use super::node::{Balls, Boxes, Frame, Lanes, WIDTH, down, up};
+use super::node::{Balls, Block, Boxes, Frame, Lanes, WIDTH, down, up};
 use crate::lanes::four;
 use crate::ray::{PreparedRay, larger};
 
@@ -68,8 +68,8 @@ impl CullRay {
         let origin = frame.lanes(simd, ray.origin());
         let mut along = four(simd, ray.direction());
         let mut unit = 1.0;
-        if !(1e-280..1e280).contains(&square) {
-            // The squares over- or underflow.
+        if square.is_nan() {
+            // The ray is not ordinary: the square of its direction may over- or underflow.
             let direction;
             (direction, unit) = scaled(ray.direction());
             along = four(simd, direction);
@@ -139,6 +139,9 @@ impl CullRay {
         length: 0.0,
         last_offset: 1.0,
     };
+
+    /// Meets nothing.
+    pub(super) const NOTHING: Self = Self { start: 2.0, end: -2.0, ..Self::EVERYTHING };
 
     /// From now on, only what reaches the parameter `t` or less is of interest.
     #[inline(always)]
@@ -239,7 +242,7 @@ fn planes<S: Simd>(simd: S, boxes: &Boxes, (row, inverse, offset): Slab) -> f32x
 
 /// The balls met, as bits.
 #[inline(always)]
-pub(super) fn meet_balls<S: Simd>(simd: S, line: &CullRay, balls: &Balls) -> u32 {
+fn meet_balls<S: Simd>(simd: S, line: &CullRay, balls: &Balls) -> u32 {
     let center = (load(simd, &balls.center[0]), load(simd, &balls.center[1]), load(simd, &balls.center[2]));
     let x = along(simd, center, line.axes[0], line.offset[0]);
     let y = along(simd, center, line.axes[1], line.offset[1]);
@@ -248,6 +251,26 @@ pub(super) fn meet_balls<S: Simd>(simd: S, line: &CullRay, balls: &Balls) -> u32
     let squared = x.mul_add(x, y.mul_add(y, beyond * beyond));
     let reach = load(simd, &balls.radius) + line.ball_slack;
     bits(squared.simd_le(reach * reach).to_bitmask())
+}
+
+/// A leaf block that the cull takes.
+pub(super) trait Culled: Block {
+    /// Which primitives a ray may meet, as bits.
+    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32;
+}
+
+impl Culled for Balls {
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32 {
+        meet_balls(simd, line, self)
+    }
+}
+
+impl Culled for Boxes {
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32 {
+        meet_boxes(simd, line, self, &mut [0; WIDTH])
+    }
 }
 
 /// How far along an axis the points are.
@@ -279,18 +302,17 @@ mod tests {
     use fearless_simd::Level;
     use oracle::Random;
 
-    use super::super::node::Block;
     use super::*;
     use crate::simd::dispatch;
     use crate::{Ray, Sphere, Triangle};
 
     #[inline(always)]
-    fn met<S: Simd, B: Block>(simd: S, frame: &Frame, ray: &PreparedRay, block: &B) -> u32 {
+    fn met<S: Simd, B: Culled>(simd: S, frame: &Frame, ray: &PreparedRay, block: &B) -> u32 {
         let mut line = CullRay::EVERYTHING;
         if line.set(simd, frame, ray, true) { block.meet(simd, &line) } else { 0 }
     }
 
-    fn check<B: Block>(
+    fn check<B: Culled>(
         leaves: &[B::Leaf],
         hits: impl Fn(&B::Leaf, &Ray) -> Option<f64>,
         random: &mut Random,

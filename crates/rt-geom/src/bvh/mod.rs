@@ -205,7 +205,9 @@ impl Bvh {
 
     #[inline(never)]
     pub(crate) fn query<Q: Query>(&self, ray: &Ray, within: Range<f64>, query: Q, visits: &mut Visits) -> Q::Answer {
-        dispatch!(self.level, simd => cast::<_, Q>(simd, self, ray, within.clone(), query, visits))
+        // Two numbers: a copy of the range would load both at once, and wait until either is stored.
+        let Range { start, end } = within;
+        dispatch!(self.level, simd => cast::<_, Q>(simd, self, ray, (start, end), query, visits))
     }
 
     #[inline(never)]

@@ -9,7 +9,6 @@ use std::cmp::Ordering;
 use fearless_simd::{Simd, f32x8, f64x4, prelude::*};
 use glam::DVec3;
 
-use super::cull::{CullRay, meet_balls, meet_boxes};
 use crate::lanes::four;
 use crate::leaf::{Leaf, Leaves};
 use crate::{Sphere, Triangle};
@@ -85,9 +84,6 @@ pub(super) trait Block: Copy + Send {
         }
         block
     }
-
-    /// Which primitives a ray may meet, as bits.
-    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32;
 }
 
 impl Block for Balls {
@@ -130,11 +126,6 @@ impl Block for Balls {
         }
         block
     }
-
-    #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32 {
-        meet_balls(simd, line, self)
-    }
 }
 
 impl Block for Boxes {
@@ -144,11 +135,6 @@ impl Block for Boxes {
     fn bound(&mut self, lane: usize, leaf: &Triangle, frame: &Frame) {
         let (low, high) = leaf.extent(frame);
         self.set(lane, low, high);
-    }
-
-    #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, line: &CullRay) -> u32 {
-        meet_boxes(simd, line, self, &mut [0; WIDTH])
     }
 }
 

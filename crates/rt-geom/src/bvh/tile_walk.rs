@@ -12,7 +12,7 @@ use super::crown::{Crown, Part, Tour};
 use super::cull::{bits, slabs};
 use super::node::{Balls, Blocked, Boxes, Kind, Region, WIDTH};
 use super::tile::{EIGHT, Tile, TileBlock, eight};
-use super::walk::{Areas, Pending, child, nearest, pending, visit};
+use super::walk::{Areas, Pending, nearest, next, visit};
 use crate::leaf::{Closest, Leaves, Query, finish};
 use crate::ray::PreparedRay;
 use crate::simd::{has_fma, prefetch_lines};
@@ -161,23 +161,12 @@ fn walk<S: Simd>(
             Kind::Inner => {
                 let node = &tree.nodes[at.index()];
                 let (enter, leave) = slabs(simd, &node.boxes, tile.near, tile.far, (0.0, tile.last));
-                let mut met = bits(enter.simd_le(leave).to_bitmask());
+                let met = bits(enter.simd_le(leave).to_bitmask());
                 // (Minus zero plus zero is zero.)
                 let key: u32x16<S> = (enter + 0.0).bitcast();
                 key.store_slice(&mut keys);
                 if met != 0 {
-                    let nearest = nearest(
-                        #[inline(always)]
-                        || {
-                            let lane = met.trailing_zeros() as usize;
-                            met &= met - 1;
-                            areas.prefetch(node.children[lane]);
-                            (pending(&keys, &node.children, lane), met == 0)
-                        },
-                        stack,
-                        &mut height,
-                    );
-                    at = child(nearest);
+                    at = nearest(node, &keys, met, Some(&areas), stack, &mut height);
                     continue;
                 }
             }
@@ -190,16 +179,9 @@ fn walk<S: Simd>(
                 block::<S, Boxes>(simd, &tree.triangle_blocks, at.index(), tile, tree, (rays, order), within);
             }
         }
-        let last = tile.last.to_bits();
-        loop {
-            if height == 0 {
-                return true;
-            }
-            height -= 1;
-            if (stack[height] >> 32) as u32 <= last {
-                at = child(stack[height]);
-                break;
-            }
+        match next(stack, &mut height, tile.last.to_bits()) {
+            Some(next) => at = next,
+            None => return true,
         }
     }
 }

@@ -4,14 +4,12 @@
 //! farthest first, each with the parameter at which the ray enters it, so that it can be dropped unseen when a better
 //! hit has been found since. At a leaf block the survivors of the cull meet the exact kernels.
 
-use std::ops::Range;
-
 use fearless_simd::Simd;
 
 use super::Bvh;
 use super::crown::{Crown, Line64, Part, Tour};
-use super::cull::{CullRay, meet_boxes};
-use super::node::{Block, Blocked, Child, Kind, Region, WIDTH};
+use super::cull::{CullRay, Culled, meet_boxes};
+use super::node::{Balls, Blocked, Boxes, Child, Kind, Node, Region, WIDTH};
 use crate::leaf::{Leaves, Query};
 use crate::ray::{PreparedRay, is_open};
 use crate::simd::{has_fma, prefetch_lines};
@@ -28,7 +26,7 @@ const SMALL_STACK: usize = 48;
 const NEARBY: usize = 1 << 15;
 
 #[inline(always)]
-pub(super) fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
+fn pending(keys: &[u32; WIDTH], children: &[Child; WIDTH], lane: usize) -> Pending {
     u64::from(keys[lane]) << 32 | u64::from(children[lane].bits())
 }
 
@@ -56,12 +54,12 @@ pub(super) fn cast<S: Simd, Q: Query>(
     simd: S,
     tree: &Bvh,
     ray: &Ray,
-    within: Range<f64>,
+    (start, end): (f64, f64),
     mut query: Q,
     visits: &mut Visits,
 ) -> Q::Answer {
-    let is_open = is_open(&within);
-    let prepared = PreparedRay::new(ray, within);
+    let is_open = is_open(&(start..end));
+    let prepared = PreparedRay::new(ray, start..end);
     if !is_open {
         // Nothing is met.
     } else if let Some(crown) = &tree.crown {
@@ -150,7 +148,7 @@ pub(super) fn visit<S: Simd, Q: Query>(
     query: &mut Q,
     visits: &mut Visits,
 ) {
-    let mut line = CullRay::EVERYTHING;
+    let mut line = CullRay::NOTHING;
     if !line.set(simd, &region.frame, prepared, tree.has_balls()) {
         return;
     }
@@ -181,27 +179,14 @@ fn walk<S: Simd, Q: Query>(
         if at.is_inner() {
             let node = &tree.nodes[at.index()];
             visits.nodes += 1;
-            let mut met = meet_boxes(simd, opaque(line), &node.boxes, &mut keys);
+            let met = meet_boxes(simd, opaque(line), &node.boxes, &mut keys);
             if met != 0 {
                 if height + WIDTH > stack.len()
                     && let Some(large) = spare.take()
                 {
                     stack = deeper(stack, large, tree.stack);
                 }
-                let nearest = nearest(
-                    #[inline(always)]
-                    || {
-                        let lane = met.trailing_zeros() as usize;
-                        met &= met - 1;
-                        if fetch {
-                            areas.prefetch(node.children[lane]);
-                        }
-                        (pending(&keys, &node.children, lane), met == 0)
-                    },
-                    stack,
-                    &mut height,
-                );
-                at = child(nearest);
+                at = nearest(node, &keys, met, fetch.then_some(&areas), stack, &mut height);
                 continue;
             }
         } else {
@@ -227,19 +212,24 @@ fn walk<S: Simd, Q: Query>(
                 line.shorten(query.limit());
             }
         }
-        // Back to the nearest part that is still of interest.
-        let last = line.last_key();
-        loop {
-            if height == 0 {
-                return;
-            }
-            height -= 1;
-            if (stack[height] >> 32) as u32 <= last {
-                at = child(stack[height]);
-                break;
-            }
+        match next(stack, &mut height, line.last_key()) {
+            Some(next) => at = next,
+            None => return,
         }
     }
+}
+
+/// The nearest pending part, if its key is at most `last`; farther ones are dropped.
+#[inline(always)]
+pub(super) fn next(stack: &[Pending], height: &mut usize, last: u32) -> Option<Child> {
+    while *height > 0 {
+        *height -= 1;
+        let pending = stack[*height];
+        if (pending >> 32) as u32 <= last {
+            return Some(child(pending));
+        }
+    }
+    None
 }
 
 /// The stack with room for `depth` entries.
@@ -251,10 +241,36 @@ fn deeper<'a>(stack: &[Pending], large: &'a mut Vec<Pending>, depth: usize) -> &
     large
 }
 
-/// The nearest of the children that `next` gives, each with whether it is the last; the others go on the stack,
-/// farthest first.
+/// The nearest of the children met, of which there is one; the others go on the stack, farthest first. What a visit of
+/// them reads first is asked for.
 #[inline(always)]
-pub(super) fn nearest(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], height: &mut usize) -> Pending {
+pub(super) fn nearest(
+    node: &Node,
+    keys: &[u32; WIDTH],
+    mut met: u32,
+    areas: Option<&Areas>,
+    stack: &mut [Pending],
+    height: &mut usize,
+) -> Child {
+    let nearest = sorted(
+        #[inline(always)]
+        || {
+            let lane = met.trailing_zeros() as usize;
+            met &= met - 1;
+            if let Some(areas) = areas {
+                areas.prefetch(node.children[lane]);
+            }
+            (pending(keys, &node.children, lane), met == 0)
+        },
+        stack,
+        height,
+    );
+    child(nearest)
+}
+
+/// The least of what `next` gives, each with whether it is the last; the others go on the stack, the greatest first.
+#[inline(always)]
+fn sorted(mut next: impl FnMut() -> (Pending, bool), stack: &mut [Pending], height: &mut usize) -> Pending {
     let (a, last) = next();
     if last {
         return a;
@@ -305,7 +321,7 @@ fn opaque(ray: &CullRay) -> &CullRay {
 /// The primitives of a leaf block that the cull leaves.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "a part of the walk, inlined into it")]
-fn block<S: Simd, Q: Query, B: Block>(
+fn block<S: Simd, Q: Query, B: Culled>(
     simd: S,
     blocks: &[B],
     index: usize,
@@ -329,28 +345,36 @@ fn block<S: Simd, Q: Query, B: Block>(
 
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the child is the low half")]
-pub(super) fn child(pending: Pending) -> Child {
+fn child(pending: Pending) -> Child {
     Child::from_bits(pending as u32)
 }
 
 /// Where children of each kind lie, to prefetch them without a branch.
 #[derive(Clone, Copy)]
-pub(super) struct Areas([(*const u8, usize); 4]);
+pub(super) struct Areas {
+    nodes: *const u8,
+    spheres: *const u8,
+    triangles: *const u8,
+}
 
 impl Areas {
     #[inline(always)]
     pub(super) fn of(tree: &Bvh) -> Self {
-        fn area<T>(items: &[T]) -> (*const u8, usize) {
-            (items.as_ptr().cast(), size_of::<T>())
+        Self {
+            nodes: tree.nodes.as_ptr().cast(),
+            spheres: tree.sphere_blocks.as_ptr().cast(),
+            triangles: tree.triangle_blocks.as_ptr().cast(),
         }
-        let nodes = area(&tree.nodes);
-        Self([nodes, area(&tree.sphere_blocks), area(&tree.triangle_blocks), nodes])
     }
 
     /// Asks for what a visit of the child reads first.
     #[inline(always)]
     pub(super) fn prefetch(&self, child: Child) {
-        let (start, size) = self.0[child.kind() as usize];
+        let (start, size) = match child.kind() {
+            Kind::Inner => (self.nodes, size_of::<Node>()),
+            Kind::Spheres => (self.spheres, size_of::<Balls>()),
+            Kind::Triangles => (self.triangles, size_of::<Boxes>()),
+        };
         prefetch_lines(start.wrapping_add(child.index() * size), 7);
     }
 }
