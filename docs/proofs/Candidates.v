@@ -6,7 +6,8 @@ Open Scope R_scope.
 Definition CANDIDATE := 16 / 10.
 
 Section Candidate.
-(* |d|, |w|, r; delta and E as computed, with their bounds of Sphere.v; y and Y the roots of delta and Delta *)
+(* |d|, |w|, r; delta and E as computed, with their bounds; y and Y the roots of delta and Delta. Sphere.v has what
+   follows for one ray and for eight: `roots_are_bounded`. *)
 Variables d w r A Q delta Delta ef : R.
 Hypotheses (d0 : 0 < d) (w0 : 0 <= w) (r0 : 0 < r) (HA : A = d * d) (HQ : Q = w * w + r * r).
 Hypotheses (Hdelta : Rabs (delta - Delta) <= 127 / 10 * u * (A * Q)) (Hef : (17 - / 100) * u * (A * Q) <= ef)
@@ -14,7 +15,8 @@ Hypotheses (Hdelta : Rabs (delta - Delta) <= 127 / 10 * u * (A * Q)) (Hef : (17 
 Let y := sqrt delta. Let Y := sqrt Delta.
 (* b, the root, the numerator n of either sign, the reciprocal of d.d, and t, as computed *)
 Variables B b root n inverse t error sign : R.
-Hypotheses (HB : Rabs B <= d * w) (Hb : Rabs (b - B) <= (4 + / 100) * u * (d * w)) (Hroot : Rabs (root - y) <= u * y)
+Hypotheses (HB : Rabs B <= d * w) (Hb : Rabs (b - B) <= (4 + / 100) * u * (d * w) + / 100 * (u * y))
+  (Hroot : Rabs (root - y) <= u * y)
   (Hsign : sign = 1 \/ sign = - 1) (Hn : Rabs (n - (- b + sign * root)) <= u * Rabs (- b + sign * root))
   (Hinverse : Rabs (inverse * A - 1) <= (4 + / 10) * u).
 Hypotheses (Ht : Rabs (t - n * inverse) <= u * Rabs (n * inverse) + bp (-1075)) (Hsmall : bp (-1075) * A * y <= / 100
@@ -73,7 +75,8 @@ Proof.
   (* everything times A *)
   set (z := d * w + y) in *. assert (z0 : 0 < z) by (unfold z; pose proof (Rmult_le_pos d w ltac:(lra) w0); lra).
   assert (dw0 : 0 <= d * w) by (apply Rmult_le_pos; lra).
-  assert (N1 : Rabs (- b + sign * root - (- B + sign * Y)) <= 127 / 10 * g + (4 + / 100) * (5001 / 10000 * g) + u * z).
+  assert (N1 : Rabs (- b + sign * root - (- B + sign * Y)) <= 127 / 10 * g + (4 + / 100) * (5001 / 10000 * g)
+    + (1 + / 100) * (u * z)).
   { assert (R1 : Rabs (root - Y) <= u * y + 127 / 10 * g).
     { replace (root - Y) with ((root - y) + (y - Y)) by ring. eapply Rle_trans; [apply Rabs_triang|]. lra. }
     assert (u * y <= u * z) by (apply Rmult_le_compat_l; unfold z; lra).
@@ -81,7 +84,7 @@ Proof.
   assert (N2 : Rabs (- b + sign * root) <= (1 + 8 * u) * z).
   { assert (Rabs root <= (1 + u) * y) by (replace root with ((root - y) + y) by ring; eapply Rle_trans;
     [apply Rabs_triang|]; rewrite (Rabs_pos_eq y) by lra; lra).
-    assert (Rabs b <= (1 + 5 * u) * (d * w)).
+    assert (Rabs b <= (1 + 5 * u) * (d * w) + u * y).
     { replace b with ((b - B) + B) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite u_val in *. lra. }
     assert (Rabs (sign * root) = Rabs root) by (destruct Hsign as [S|S]; rewrite S, ?Rmult_1_l;
       [reflexivity | replace (-1 * root) with (- root) by ring; apply Rabs_Ropp]).

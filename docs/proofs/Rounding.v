@@ -394,6 +394,25 @@ Ltac error_of H name :=
       cbn [exact size] in name; rewrite ?Rabs_mult in name ]
   end.
 
+(* A number is computed in some order: by a term with the monomials of another and as many roundings. *)
+Definition in_some_order n least t z := exists t', plain t' z /\ bounded t' /\ exact t' = exact t /\ size t' = size t /\
+  Z.of_nat (count t') = n /\ (low t' <= least)%Z.
+Lemma order_error : forall n least t z, in_some_order n least t z -> (n <= 100)%Z ->
+  Rabs (z - exact t) <= (IZR n + / 1000) * u * size t + bp least.
+Proof.
+  intros n least t z (t' & H & B & Ex & Sz & N & L) Hn.
+  pose proof (plain_error_at t' z n (low t') H B N eq_refl Hn) as P. rewrite Ex, Sz in P.
+  pose proof (bp_le _ _ L). lra.
+Qed.
+Ltac error_in H name := pose proof (order_error _ _ _ _ H ltac:(lia)) as name; cbn [exact size] in name;
+  rewrite ?Rabs_mult in name.
+(* The number of the other sign. *)
+Lemma plain_negated : forall a b z, plain (Sub a b) z -> plain (Sub b a) (- z).
+Proof.
+  intros a b z H. inversion H. subst. eapply CSub; eauto.
+  replace (- z - (y - x)) with (- (z - (x - y))) by ring. now rewrite Rabs_Ropp, (Rabs_minus_sym y x).
+Qed.
+
 (* What underflows beside what it is compared with. *)
 Lemma bp_part : forall k s, (k <= s - 100)%Z -> bp k <= / 1000000000000000000000000000000 * bp s.
 Proof.
@@ -424,6 +443,8 @@ Ltac constant := rewrite ?u_val, Rabs_pos_eq; simpl; lra.
 
 (* ---- Vectors ---- *)
 Definition tdot a1 a2 a3 b1 b2 b3 := Add (Add (Mul a1 b1) (Mul a2 b2)) (Mul a3 b3).
+(* the same from the other end: fused, and in lanes *)
+Definition tlane x1 x2 x3 y1 y2 y3 := Add (Mul x1 y1) (Add (Mul x2 y2) (Mul x3 y3)).
 (* one component of a cross product: a b - c d *)
 Definition tminor a b c d := Sub (Mul a b) (Mul c d).
 Lemma Rabs3 : forall x y m, Rabs x <= m -> Rabs y <= m -> Rmax (Rabs x) (Rabs y) <= m.

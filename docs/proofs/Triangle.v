@@ -155,14 +155,9 @@ Proof.
   apply Rabs_le_inv in P. lra.
 Qed.
 
-(* A number is computed in some order: by a term with the monomials of another and as many roundings. *)
-Definition in_some_order n least t z := exists t', plain t' z /\ bounded t' /\ exact t' = exact t /\ size t' = size
-  t /\
-  Z.of_nat (count t') = n /\ (low t' <= least)%Z.
 (* One ray (`filter`), eight rays with a triangle each and eight of one origin (`lanes`): sums of dot products from
   the
    other end, and d . (f x e) for e . (d x f). *)
-Definition tlane x1 x2 x3 y1 y2 y3 := Add (Mul x1 y1) (Add (Mul x2 y2) (Mul x3 y3)).
 Ltac order t := exists t; split; [assumption|]; unfold tlane; terms; split; [cbn [bounded]; repeat split;
   assumption|];
   split; [cbn [exact]; ring|]; split; [cbn [size]; ring|]; split; [vm_compute; reflexivity | vm_compute;

@@ -26,7 +26,7 @@ struct LaneCrossings<S: Simd> {
 }
 
 impl<S: Simd> LaneCrossings<S> {
-    // The operations of `filter` and `approximation`.
+    // The operations of `filter` and `approximation`, modelled in docs/proofs/Sphere.v: tlane_squares and others.
     #[inline(always)]
     fn new(simd: S, spheres: [&Sphere; 8], rays: &RayLanes<S>) -> Self {
         let center = [
@@ -60,7 +60,7 @@ impl<S: Simd> LaneCrossings<S> {
 }
 
 impl LaneKernels for Sphere {
-    // Near roots alone. The operations of `filter` and `approximation`.
+    // Near roots alone. The operations of `filter` and `approximation`, in docs/proofs/Sphere.v: tpencil_x, tpencil_b.
     #[inline(always)]
     fn pencil_candidates<S: Simd>(&self, simd: S, rays: &PencilLanes<S>, range: (f64, f64)) -> LaneCandidates<S> {
         let w = rays.origin - self.center;
