@@ -1,5 +1,6 @@
 (* rt-geom, bvh/cull.rs: a hit in a box or a ball, from the ray as it is given to the bit that is set. *)
 From Proofs Require Import Rounding Single Norm Boxes Line Balls.
+From Proofs Require Frame.
 Open Scope R_scope.
 
 (* The reciprocal of a component, from its double to the f32 that is cut. *)
@@ -42,8 +43,8 @@ Theorem box_is_kept : forall o1 o2 o3 p1 p2 p3 d1 d2 d3 S dot x1 x2 x3 kappa t t
   let P1 := p1 + t' * (kappa * d1) in let P2 := p2 + t' * (kappa * d2) in let P3 := p3 + t' * (kappa * d3) in
   let q1 := RN (o1 - x1) in let q2 := RN (o2 - x2) in let q3 := RN (o3 - x3) in
   Rabs d1 <= bp 100 -> Rabs d2 <= bp 100 -> Rabs d3 <= bp 100 -> bp (-200) <= d1 * d1 + d2 * d2 + d3 * d3 ->
-  Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + bp (-52) -> Rabs (o2 - p2) <= (1 + / 1000) * u * Rabs o2 + bp (-52) ->
-  Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + bp (-52) ->
+  Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + IMAGE -> Rabs (o2 - p2) <= (1 + / 1000) * u * Rabs o2 + IMAGE ->
+  Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + IMAGE ->
   plain (tdot (X d1 100) (X d2 100) (X d3 100) (X d1 100) (X d2 100) (X d3 100)) S ->
   plain (tdot (X o1 45) (X o2 45) (X o3 45) (X d1 100) (X d2 100) (X d3 100)) dot ->
   Rabs (x1 - d1 * g) <= u * Rabs (d1 * g) + bp (-1075) -> Rabs (x2 - d2 * g) <= u * Rabs (d2 * g) + bp (-1075) ->
@@ -134,8 +135,8 @@ Theorem ball_is_kept : forall o1 o2 o3 p1 p2 p3 d1 d2 d3 S dot x1 x2 x3 kappa t 
   let P1 := p1 + t' * (kappa * d1) in let P2 := p2 + t' * (kappa * d2) in let P3 := p3 + t' * (kappa * d3) in
   let q1 := RN (o1 - x1) in let q2 := RN (o2 - x2) in let q3 := RN (o3 - x3) in
   Rabs d1 <= bp 100 -> Rabs d2 <= bp 100 -> Rabs d3 <= bp 100 -> bp (-200) <= d1 * d1 + d2 * d2 + d3 * d3 ->
-  Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + bp (-52) -> Rabs (o2 - p2) <= (1 + / 1000) * u * Rabs o2 + bp (-52) ->
-  Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + bp (-52) ->
+  Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + IMAGE -> Rabs (o2 - p2) <= (1 + / 1000) * u * Rabs o2 + IMAGE ->
+  Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + IMAGE ->
   plain (tdot (X d1 100) (X d2 100) (X d3 100) (X d1 100) (X d2 100) (X d3 100)) S ->
   plain (tdot (X o1 45) (X o2 45) (X o3 45) (X d1 100) (X d2 100) (X d3 100)) dot ->
   Rabs (x1 - d1 * g) <= u * Rabs (d1 * g) + bp (-1075) -> Rabs (x2 - d2 * g) <= u * Rabs (d2 * g) + bp (-1075) ->
@@ -209,4 +210,121 @@ Proof.
     replace (c3 - (q3 + tau * (d3 / l))) with ((c3 - P3) + - (q3 - (p3 - along * (d3 / l)))) by (rewrite C3; ring).
     eapply Rle_trans; [apply norm_triangle|]. rewrite norm_opp. lra.
   - split; [exact LB | exact LA].
+Qed.
+
+(* ---- Directions whose squares over- or underflow (`scaled`): divided by a power of two near the greatest part ---- *)
+Definition power g := Z.max (-1021) (Z.min 1021 (mag radix2 g - 1)).
+(* A component is divided exactly, or is off by half of the least double beside a greatest one of at least 1. *)
+Theorem divided : forall e g, F e -> F g -> 0 < g -> Rabs e <= g -> g < bp 1024 ->
+  let k := power g in let d := RN (e / bp k) in
+  Rabs (d - e / bp k) <= bp (-1075) /\ ((k <= 0)%Z -> d = e / bp k) /\ ((1 <= k)%Z -> bp k <= g) /\
+  Rabs d <= bp 3 /\ bp (-53) <= g / bp k.
+Proof.
+  intros e g Fe Fg g0 He Hg k d. assert (I : forall x, x / bp k = x * bp (- k)) by (intro; now rewrite bpow_opp).
+  assert (K0 : 0 < bp (- k)) by apply bp_pos. unfold d. rewrite !I.
+  assert (M1 : bp (mag radix2 g - 1) <= g).
+  { pose proof (bpow_mag_le radix2 g ltac:(lra)) as M. now rewrite Rabs_pos_eq in M by lra. }
+  assert (M2 : g < bp (mag radix2 g)).
+  { pose proof (bpow_mag_gt radix2 g) as M. now rewrite Rabs_pos_eq in M by lra. }
+  assert (M3 : (mag radix2 g <= 1024)%Z) by (apply mag_le_bpow; [lra | now rewrite Rabs_pos_eq by lra]).
+  assert (T : g * bp (- k) <= bp 3).
+  { apply Rle_trans with (bp (mag radix2 g) * bp (- k)); [apply Rmult_le_compat_r; lra|]. rewrite <- bp_add.
+    apply bp_le. unfold k, power. lia. }
+  split; [now apply Frame.scaled|]. split; [intro K; apply Frame.scaled_up; [assumption | lia]|].
+  split; [intro K; apply Rle_trans with (2 := M1); apply bp_le; unfold k, power in *; lia|]. split.
+  - assert (B : Rabs (e * bp (- k)) <= bp 3).
+    { rewrite Rabs_mult, (Rabs_pos_eq (bp (- k))) by lra. apply Rle_trans with (2 := T). apply Rmult_le_compat_r; lra. }
+    apply Rabs_le_inv in B. assert (F3 : F (bp 3)) by (apply F_bp; lia). apply Rabs_le. split.
+    + rewrite <- (RN_id (bp 3) F3), <- RN_opp. now apply RN_le.
+    + rewrite <- (RN_id (bp 3) F3). now apply RN_le.
+  - destruct (Z_le_gt_dec (-1021) (mag radix2 g - 1)) as [L|L].
+    + apply Rle_trans with (bp (mag radix2 g - 1) * bp (- k)); [|apply Rmult_le_compat_r; lra]. rewrite <- bp_add.
+      apply bp_le. unfold k, power. lia.
+    + assert (G : bp (-1074) <= g).
+      { apply (generic_format_ge_bpow radix2 fexp); [|assumption | exact Fg]. intro x. unfold fexp, FLT_exp. lia. }
+      apply Rle_trans with (bp (-1074) * bp (- k)); [|apply Rmult_le_compat_r; lra]. rewrite <- bp_add. apply bp_le.
+      unfold k, power. lia.
+Qed.
+
+(* A line of any direction (e1, e2, e3), not zero, that hits at P: of the divided direction and of an origin close by,
+   which has the premises of `box_is_kept` and `ball_is_kept`, it is a line that hits at P as well. *)
+Theorem any_direction : forall e1 e2 e3 o1 o2 o3 p1 p2 p3 s t',
+  let g := Rmax (Rabs e1) (Rmax (Rabs e2) (Rabs e3)) in let k := power g in let kappa := bp k * s in
+  let d1 := RN (e1 / bp k) in let d2 := RN (e2 / bp k) in let d3 := RN (e3 / bp k) in
+  let P1 := p1 + t' * (s * e1) in let P2 := p2 + t' * (s * e2) in let P3 := p3 + t' * (s * e3) in
+  F e1 -> F e2 -> F e3 -> 0 < g -> g < bp 1024 ->
+  Rabs o1 <= bp 45 -> Rabs o2 <= bp 45 -> Rabs o3 <= bp 45 ->
+  Rabs (o1 - p1) <= (1 + / 1000) * u * Rabs o1 + bp (-52) -> Rabs (o2 - p2) <= (1 + / 1000) * u * Rabs o2 + bp (-52) ->
+  Rabs (o3 - p3) <= (1 + / 1000) * u * Rabs o3 + bp (-52) -> P1 * P1 + P2 * P2 + P3 * P3 <= 1 ->
+  (exists p1' p2' p3', p1' + t' * (kappa * d1) = P1 /\ p2' + t' * (kappa * d2) = P2 /\ p3' + t' * (kappa * d3) = P3 /\
+    Rabs (o1 - p1') <= (1 + / 1000) * u * Rabs o1 + IMAGE /\ Rabs (o2 - p2') <= (1 + / 1000) * u * Rabs o2 + IMAGE /\
+    Rabs (o3 - p3') <= (1 + / 1000) * u * Rabs o3 + IMAGE) /\
+  Rabs d1 <= bp 100 /\ Rabs d2 <= bp 100 /\ Rabs d3 <= bp 100 /\ bp (-200) <= d1 * d1 + d2 * d2 + d3 * d3.
+Proof.
+  intros e1 e2 e3 o1 o2 o3 p1 p2 p3 s t' g k kappa d1 d2 d3 P1 P2 P3 F1 F2 F3 g0 gt O1 O2 O3 Q1 Q2 Q3 HP.
+  assert (G1 : Rabs e1 <= g) by apply Rmax_l.
+  assert (G2 : Rabs e2 <= g) by (eapply Rle_trans; [apply Rmax_l | apply Rmax_r]).
+  assert (G3 : Rabs e3 <= g) by (eapply Rle_trans; [apply Rmax_r | apply Rmax_r]).
+  assert (GG : g = Rabs e1 \/ g = Rabs e2 \/ g = Rabs e3).
+  { unfold g, Rmax at 1 3 5. destruct (Rle_dec (Rabs e1) _); [right; unfold Rmax; destruct Rle_dec; auto | now left]. }
+  assert (Fg : F g).
+  { destruct GG as [E|[E|E]]; rewrite E; now apply generic_format_abs. }
+  destruct (divided e1 g F1 Fg g0 G1 gt) as (E1 & X1 & KG & B1 & L).
+  destruct (divided e2 g F2 Fg g0 G2 gt) as (E2 & X2 & _ & B2 & _).
+  destruct (divided e3 g F3 Fg g0 G3 gt) as (E3 & X3 & _ & B3 & _).
+  fold k in E1, E2, E3, X1, X2, X3, KG, B1, B2, B3, L. fold d1 in E1, X1, B1. fold d2 in E2, X2, B2.
+  fold d3 in E3, X3, B3. pose proof (bp_pos k) as K0. pose proof u_pos as U0.
+  assert (B52 : bp (-52) = 2 * u) by (unfold u; change (-52)%Z with (1 + -53)%Z; rewrite bp_add, bp_1; reflexivity).
+  assert (B8 : forall x, Rabs x <= bp 3 -> Rabs x <= bp 100).
+  { intros x H. eapply Rle_trans; [exact H | apply bp_le; lia]. }
+  split; [|split; [now apply B8 | split; [now apply B8 | split; [now apply B8|]]]].
+  - (* the parameter in units of the divided direction is at most 2^47 where anything is off *)
+    assert (far : forall e p o P, Rabs e = g -> P = p + t' * (s * e) -> Rabs P <= 1 -> Rabs o <= bp 45 ->
+      Rabs (o - p) <= (1 + / 1000) * u * Rabs o + bp (-52) -> (1 <= k)%Z -> Rabs (t' * kappa) <= bp 47).
+    { intros e p o P Ee EP HP' Ho Hp K. apply Rle_trans with (Rabs (t' * s) * g).
+      - unfold kappa. replace (t' * (bp k * s)) with (t' * s * bp k) by ring. rewrite Rabs_mult, (Rabs_pos_eq (bp k)) by
+          lra. apply Rmult_le_compat_l; [apply Rabs_pos | now apply KG].
+      - rewrite <- Ee, <- Rabs_mult. replace (t' * s * e) with (P - p) by (rewrite EP; ring).
+        replace (P - p) with (P + (o - p) + - o) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_Ropp.
+        eapply Rle_trans; [apply Rplus_le_compat_r, Rabs_triang|]. rewrite B52, u_val in Hp.
+        assert (Z : bp 47 = 140737488355328) by (simpl; lra). assert (Z2 : bp 45 = 35184372088832) by (simpl; lra).
+        rewrite Z. rewrite Z2 in Ho. lra. }
+    assert (inside : forall x y z, x * x + y * y + z * z <= 1 -> Rabs x <= 1).
+    { intros x y z H. apply abs_below; [lra|]. pose proof (sq_pos y). pose proof (sq_pos z). lra. }
+    assert (FAR : (1 <= k)%Z -> Rabs (t' * kappa) <= bp 47).
+    { destruct GG as [E|[E|E]]; symmetry in E.
+      - apply (far e1 p1 o1 P1); auto. now apply (inside P1 P2 P3).
+      - apply (far e2 p2 o2 P2); auto. apply (inside P2 P1 P3). lra.
+      - apply (far e3 p3 o3 P3); auto. apply (inside P3 P1 P2). lra. }
+    assert (near : forall e d, Rabs (d - e / bp k) <= bp (-1075) -> ((k <= 0)%Z -> d = e / bp k) ->
+      Rabs (t' * kappa * (e / bp k - d)) <= / 1000 * u).
+    { intros e d E X. destruct (Z_le_gt_dec k 0) as [K|K].
+      - rewrite (X K). replace (e / bp k - e / bp k) with 0 by ring. rewrite Rmult_0_r, Rabs_R0. lra.
+      - rewrite Rabs_mult, (Rabs_minus_sym (e / bp k)). apply Rle_trans with (bp 47 * bp (-1075)).
+        + apply Rmult_le_compat; auto using Rabs_pos. apply FAR. lia.
+        + apply Rle_trans with (bp (-10) * u); [unfold u; rewrite <- !bp_add; apply bp_le; lia|].
+          apply Rmult_le_compat_r; simpl; lra. }
+    assert (move : forall e d o p, Rabs (d - e / bp k) <= bp (-1075) -> ((k <= 0)%Z -> d = e / bp k) ->
+      Rabs (o - p) <= (1 + / 1000) * u * Rabs o + bp (-52) ->
+      p + t' * kappa * (e / bp k - d) + t' * (kappa * d) = p + t' * (s * e) /\
+      Rabs (o - (p + t' * kappa * (e / bp k - d))) <= (1 + / 1000) * u * Rabs o + IMAGE).
+    { intros e d o p E X H. split; [unfold kappa; field; lra|].
+      replace (o - (p + t' * kappa * (e / bp k - d))) with ((o - p) + - (t' * kappa * (e / bp k - d))) by ring.
+      eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_Ropp. pose proof (near e d E X). lra. }
+    destruct (move e1 d1 o1 p1 E1 X1 Q1) as [Y1 Z1]. destruct (move e2 d2 o2 p2 E2 X2 Q2) as [Y2 Z2].
+    destruct (move e3 d3 o3 p3 E3 X3 Q3) as [Y3 Z3].
+    exists (p1 + t' * kappa * (e1 / bp k - d1)), (p2 + t' * kappa * (e2 / bp k - d2)),
+      (p3 + t' * kappa * (e3 / bp k - d3)). repeat split; assumption.
+  - (* the greatest component *)
+    assert (low : forall e, Rabs e = g -> bp (-106) <= RN (e / bp k) * RN (e / bp k)).
+    { intros e Ee. change (-106)%Z with (-53 + -53)%Z. rewrite <- bp_sq, <- (abs_sq (RN (e / bp k))).
+      assert (A : bp (-53) <= Rabs (RN (e / bp k))); [|apply Rmult_le_compat; auto; apply Rlt_le, bp_pos].
+      rewrite <- (RN_id (bp (-53))) by (apply F_bp; lia). unfold Rabs in Ee. destruct (Rcase_abs e) as [N|N].
+      - rewrite <- Rabs_Ropp, <- RN_opp. apply Rle_trans with (RN (- (e / bp k))); [|apply Rle_abs]. apply RN_le.
+        replace (- (e / bp k)) with (g / bp k) by (rewrite <- Ee; field; lra). exact L.
+      - apply Rle_trans with (RN (e / bp k)); [|apply Rle_abs]. apply RN_le. rewrite Ee. exact L. }
+    pose proof (sq_pos d1). pose proof (sq_pos d2). pose proof (sq_pos d3).
+    apply Rle_trans with (bp (-106)); [apply bp_le; lia|].
+    destruct GG as [E|[E|E]]; symmetry in E; pose proof (low _ E) as W;
+      [fold d1 in W | fold d2 in W | fold d3 in W]; lra.
 Qed.

@@ -637,8 +637,8 @@ Let tau := Rmax (t' * long) 0.
 Lemma line_facts : (forall d, Rabs (RNs (RN (d * k)) - d / l) <= (1 + / 1000) * v * Rabs (d / l) + bp (-130)) /\
   Rabs (len - long) <= (37 / 10) * u * long /\ 0 < long <= (1 + / 100) * bp 1024.
 Proof.
-  assert (Z : Rabs (0 - 0) <= (1 + / 1000) * u * Rabs 0 + bp (-52)) by (rewrite Rminus_0_r, Rabs_R0, Rmult_0_r,
-    Rplus_0_l; apply Rlt_le, bp_pos).
+  assert (Z : Rabs (0 - 0) <= (1 + / 1000) * u * Rabs 0 + IMAGE) by (rewrite Rminus_0_r, Rabs_R0, Rmult_0_r,
+    Rplus_0_l; pose proof u_pos; lra).
   assert (Q : exists dot, plain (tdot (X 0 45) (X 0 45) (X 0 45) (X d1 100) (X d2 100) (X d3 100)) dot)
     by (eexists; unfold tdot; plain_terms).
   destruct Q as [dot Q]. set (g := RN (dot * RN (/ S))).
