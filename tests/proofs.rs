@@ -30,6 +30,7 @@ const FILES: &[File] = &[
             ("FACING", "../figures/src/import/polygon.rs", "if area[axis].abs() > ", " * error && size"),
         ],
     ),
+    ("Balance", &[("PULL_ERROR", "rt-geom/src/enclosing/certify.rs", "let pull = pull / total + ", " + 2.0 * step")]),
     ("Balls", &[("BALL_SLACK", "rt-geom/src/bvh/cull.rs", "const BALL_SLACK: f32 = ", " * U;")]),
     (
         "Cancelling",

@@ -184,7 +184,7 @@ Hypotheses (FM : F M) (Fbase : F base) (Fmean : F mean) (Fpull : F pull) (Ferr :
 Hypotheses (M0 : bp (-200) <= M) (Hm : bp (-300) <= m <= M) (Hb : 0 <= base) (Hmu : mu <= M)
   (Herr : 0 <= err <= 1030 * (u * (u * M)))
   (Hmean : Rabs (mu - (base + mean)) <= err + 11 * (u * Rabs mean) + 22 * (u * (M - mu)))
-  (Hg : 0 <= g <= pull - u * / 2).
+  (Hg : 0 <= g <= (1 + / 1000) * pull) (Hsmall : pull <= / 1048576 -> g <= pull - u * / 2) (Hpull : 0 < pull).
 (* `below_mean` with `centers`, and `bound_holds` *)
 Hypotheses (H1 : mu - g * M <= m)
   (H2 : forall p, g <= p -> mu - p * ((M - mu + 2 * M * p) / (2 * BALANCE) + M * BALANCE) <= m).
@@ -357,16 +357,18 @@ Proof.
   apply Rabs_le_inv in Hmean. change (M - mu) with X in Hmean. fold a in Hmean.
   destruct (Rle_or_lt (/ 1048576) pull) as [L|S].
   - (* a pull that is not small: the first bound would do *)
-    assert (G1 : g * M <= pM) by (unfold pM; apply Rmult_le_compat_r; lra).
+    assert (G1 : g * M <= (1 + / 1000) * pM).
+    { replace ((1 + / 1000) * pM) with ((1 + / 1000) * pull * M) by (unfold pM; ring). apply Rmult_le_compat_r; lra. }
     assert (Q1 : / 1048576 * pM <= ppM) by (unfold ppM; apply Rmult_le_compat_r; [exact pM0 | lra]).
     assert (Q2 : / 1048576 * X <= pX) by (unfold pX; apply Rmult_le_compat_r; lra).
     assert (UM : u * (u * M) <= u * (u * (1048576 * pM))).
     { apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; [lra|]. assert (/ 1048576 * M <= pM) by (unfold pM;
         apply Rmult_le_compat_r; lra). lra. }
     clear - H1 G1 Q1 Q2 UM Hmean PF PE PT T0 T1 Herr X0 A0 ua pM0 pX0 U. rewrite u_val in *. lra.
-  - set (p := pull - u * / 2). pose proof (H2 p (proj2 Hg)) as H. change (M - mu) with X in H. rewrite B in H.
+  - pose proof (Hsmall (Rlt_le _ _ S)) as GS. set (p := pull - u * / 2) in *. pose proof (H2 p GS) as H.
+    change (M - mu) with X in H. rewrite B in H.
     replace ((X + 2 * M * p) / (2 * / 67108864)) with (33554432 * X + 67108864 * (M * p)) in H by field.
-    assert (p0 : 0 <= p) by (unfold p; lra).
+    assert (p0 : 0 <= p) by lra.
     assert (EP : p * (33554432 * X + 67108864 * (M * p) + M * / 67108864) = pull * (33554432 * X + 67108864 * (M *
       p) + M * /
       67108864) - u * / 2 * (33554432 * X + 67108864 * (M * p) + M * / 67108864)) by (unfold p; ring).

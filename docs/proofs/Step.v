@@ -206,7 +206,8 @@ Proof.
   unfold z in *. rewrite u_val in *. lra.
 Qed.
 (* The reach at the next center, bracketed as in the code. *)
-Lemma step_bracketed : let l := RN (low + along) in high + RN (l - error) <= next <= high + RN (l + error).
+Lemma step_bracketed : let l := RN (low + along) in high + RN (l - error) <= next <= high + RN (l + error) /\
+  Rabs (next - (high + l)) + 2 * (u * Rabs l) <= (1 - / 100) * error.
 Proof.
   intro l. destruct R0_pos as [L V0]. pose proof (bp_pos (-352)) as Bp. pose proof u_pos as U.
   pose proof (norm_pos e1 e2 e3) as EP. fold E in EP.
@@ -244,11 +245,15 @@ Proof.
   { eapply Rle_trans; [apply RN_err|]. apply Rplus_le_compat; [|lra]. rewrite <- Rmult_plus_distr_l.
     apply Rmult_le_compat_l; [lra|]. eapply Rle_trans; [apply Rabs_triang|]. rewrite (Rabs_pos_eq error); lra. }
   apply Rabs_le_inv in R1, R2, R3, AN, Hreach. unfold next. set (n := norm (v1 + e1) (v2 + e2) (v3 + e3)) in *.
-  assert (RR : R0 = V + r) by reflexivity. clearbody n z b a l error. rewrite u_val in *. split; lra.
+  assert (RR : R0 = V + r) by reflexivity. clearbody n z b a l error.
+  assert (W : Rabs (n + r - (high + l)) <= (1 - / 100) * error - 2 * ((102 / 100) * z + (1 + / 500) * (u * E))).
+  { clear - R1 AN Hreach UL UA X1 EL N1 N2 RR HE0 T z0 b0 ue ur. apply Rabs_le. rewrite u_val in *. split; lra. }
+  split; [rewrite u_val in *; split; lra | lra].
 Qed.
 End Step.
 
-(* In the words of the code: what is known of the reach at a center gives the bracket at the next one. *)
+(* In the words of the code: what is known of the reach at a center gives the bracket at the next one, and what
+   Balance.v asks for. *)
 Theorem STEP_ERROR_holds : forall c1 c2 c3 b1 b2 b3 t1 t2 t3 r high low E0 inverse dot,
   let V := norm (c1 - b1) (c2 - b2) (c3 - b3) in let R0 := V + r in let q := 400%Z in
   0 <= r -> bp (-352) <= V <= bp 352 -> Rabs (high + low - R0) <= 40 * (u * (u * R0)) ->
@@ -261,7 +266,8 @@ Theorem STEP_ERROR_holds : forall c1 c2 c3 b1 b2 b3 t1 t2 t3 r high low E0 inver
   let bent := RN (inverse * RN (length * length)) in
   let error := RN (E0 + RN (bent + RN (STEP_ERROR * length))) in let l := RN (low + RN (dot * inverse)) in
   let next := norm (t1 - b1) (t2 - b2) (t3 - b3) + r in
-  high + RN (l - error) <= next <= high + RN (l + error).
+  high + RN (l - error) <= next <= high + RN (l + error) /\
+  Rabs (next - (high + l)) + 2 * (u * Rabs l) <= (1 - / 100) * error.
 Proof.
   intros. pose proof (step_bracketed c1 c2 c3 b1 b2 b3 t1 t2 t3 r high low E0 inverse dot) as S. cbv zeta in S.
   replace (c1 - b1 + (t1 - c1)) with (t1 - b1) in S by ring. replace (c2 - b2 + (t2 - c2)) with (t2 - b2) in S by ring.
