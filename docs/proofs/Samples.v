@@ -118,6 +118,127 @@ Qed.
 Theorem BILINEAR_ROUNDINGS_holds : 7 + 2 <= BILINEAR_ROUNDINGS. Proof. unfold BILINEAR_ROUNDINGS. lra. Qed.
 End Bilinear.
 
+(* The mixture of four texels at a place, computed from samples of at most m: within 7 u of that of their colours. *)
+Lemma RN_share : forall x, 0 <= x <= 1 -> Rabs (RN x - x) <= / 2 * u.
+Proof.
+  intros x [H0 H1]. pose proof u_pos. destruct (Req_dec x 0) as [Z|N].
+  { rewrite Z, RN_0, Rminus_0_r, Rabs_R0. lra. }
+  destruct (Rle_lt_or_eq_dec _ _ H1) as [L|E].
+  - pose proof (error_le_half_ulp radix2 fexp even x) as P. change (round radix2 fexp (Znearest even) x) with (RN x)
+      in P.
+    eapply Rle_trans; [exact P|]. rewrite ulp_neq_0 by assumption.
+    assert (mag radix2 x <= 0)%Z by (apply mag_le_bpow; [assumption | rewrite Rabs_pos_eq by lra; exact L]).
+    apply Rmult_le_compat_l; [lra|]. apply bp_le. unfold cexp, fexp, FLT_exp. lia.
+  - rewrite E, RN_id by (change 1 with (bp 0); apply F_bp; lia). replace (1 - 1) with 0 by ring. rewrite Rabs_R0. lra.
+Qed.
+Section Four.
+Variable m : Z.
+Hypothesis Hm : (1 <= m <= 65535)%Z.
+Let n := IZR m.
+Definition row x y s := RN (IZR x + RN (RN (IZR y - IZR x) * s)).
+Definition mixed p q w := p + (q - p) * w.
+Lemma mixed_between : forall p q w a b, a <= p <= b -> a <= q <= b -> 0 <= w <= 1 -> a <= mixed p q w <= b.
+Proof.
+  intros p q w a b P Q W. unfold mixed. replace (p + (q - p) * w) with (p * (1 - w) + q * w) by ring.
+  assert (a * (1 - w) <= p * (1 - w) <= b * (1 - w)) by (split; apply Rmult_le_compat_r; lra).
+  assert (a * w <= q * w <= b * w) by (split; apply Rmult_le_compat_r; lra). lra.
+Qed.
+Lemma mixed_near : forall p q p' q' w e, Rabs (p - p') <= e -> Rabs (q - q') <= e -> 0 <= w <= 1 ->
+  Rabs (mixed p q w - mixed p' q' w) <= e.
+Proof.
+  intros p q p' q' w e P Q W. replace (mixed p q w - mixed p' q' w) with (mixed (p - p') (q - q') w) by (unfold mixed;
+    ring). apply Rabs_le_inv in P. apply Rabs_le_inv in Q. apply Rabs_le. now apply mixed_between.
+Qed.
+Lemma n_range : 1 <= n <= 65535. Proof. unfold n. split; apply IZR_le; lia. Qed.
+Lemma least_small : 0 < bp (-1075) <= / 1000000 * u.
+Proof.
+  split; [apply bp_pos|]. apply Rle_trans with (bp (-20) * u); [unfold u; rewrite <- !bp_add; apply bp_le; lia|].
+  pose proof u_pos. apply Rmult_le_compat_r; simpl; lra.
+Qed.
+Lemma row_near : forall x y s, (0 <= x <= m)%Z -> (0 <= y <= m)%Z -> 0 <= s <= 1 ->
+  Rabs (row x y s - mixed (IZR x) (IZR y) s) <= (2 + / 100) * (u * n) /\ 0 <= mixed (IZR x) (IZR y) s <= n.
+Proof.
+  intros x y s X Y W. destruct n_range as [N1 N2]. destruct least_small as [T0 T]. pose proof u_pos as U.
+  assert (X1 : 0 <= IZR x <= n) by (unfold n; split; apply IZR_le; lia).
+  assert (Y1 : 0 <= IZR y <= n) by (unfold n; split; apply IZR_le; lia).
+  pose proof (mixed_between _ _ s _ _ X1 Y1 W) as B. split; [|exact B]. unfold row, mixed in *.
+  assert (FD : F (IZR y - IZR x)).
+  { rewrite <- minus_IZR. replace (IZR (y - x)) with (IZR (y - x) * bp 0) by (simpl; ring). apply F_scaled; lia. }
+  rewrite (RN_id _ FD). set (d := (IZR y - IZR x) * s) in *. pose proof (RN_err d) as E1. set (p := RN d) in *.
+  pose proof (RN_err (IZR x + p)) as E2. set (z := RN (IZR x + p)) in *.
+  assert (D : Rabs d <= n).
+  { unfold d. rewrite Rabs_mult, (Rabs_pos_eq s) by lra. assert (Rabs (IZR y - IZR x) <= n) by (apply Rabs_le; lra).
+    pose proof (Rabs_pos (IZR y - IZR x)). apply Rle_trans with (n * 1); [apply Rmult_le_compat; lra | lra]. }
+  assert (XP : Rabs (IZR x + p) <= n + Rabs (p - d)).
+  { replace (IZR x + p) with ((IZR x + d) + (p - d)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    rewrite (Rabs_pos_eq (IZR x + d)) by lra. lra. }
+  replace (z - (IZR x + d)) with ((z - (IZR x + p)) + (p - d)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+  clear - E1 E2 D XP N1 T0 T. set (a := Rabs (p - d)) in *. rewrite u_val in *. lra.
+Qed.
+Theorem four_texels : forall a b c d s r, (0 <= a <= m)%Z -> (0 <= b <= m)%Z -> (0 <= c <= m)%Z -> (0 <= d <= m)%Z ->
+  0 <= s <= 1 -> 0 <= r <= 1 -> let color x := RN (IZR x / n) in
+  let upper := row a b s in let lower := row c d s in
+  Rabs (RN (RN (upper + RN (RN (lower - upper) * r)) / n) -
+    mixed (mixed (color a) (color b) s) (mixed (color c) (color d) s) r) <= 7 * u.
+Proof.
+  intros a b c d s r Ha Hb Hc Hd Hs Hr color upper lower. destruct n_range as [N1 N2]. destruct least_small as [T0 T].
+  pose proof u_pos as U. destruct (row_near a b s Ha Hb Hs) as [P1 B1]. destruct (row_near c d s Hc Hd Hs) as [P2 B2].
+  fold upper in P1. fold lower in P2. set (A := mixed (IZR a) (IZR b) s) in *. set (C := mixed (IZR c) (IZR d) s) in *.
+  pose proof (mixed_between _ _ r _ _ B1 B2 Hr) as B3. set (M := mixed A C r) in *.
+  assert (nn : n * / n = 1) by (field; lra). assert (i0 : 0 < / n) by (apply Rinv_0_lt_compat; lra).
+  (* the colours *)
+  assert (K : forall x, (0 <= x <= m)%Z -> Rabs (color x - IZR x * / n) <= / 2 * u).
+  { intros x Hx. apply RN_share. assert (0 <= IZR x <= n) by (unfold n; split; apply IZR_le; lia). split.
+    - apply Rmult_le_pos; lra.
+    - rewrite <- nn. apply Rmult_le_compat_r; lra. }
+  assert (KM : Rabs (mixed (mixed (color a) (color b) s) (mixed (color c) (color d) s) r - M * / n) <= / 2 * u).
+  { replace (M * / n) with (mixed (mixed (IZR a * / n) (IZR b * / n) s) (mixed (IZR c * / n) (IZR d * / n) s) r) by
+      (unfold M, A, C, mixed; ring). apply mixed_near; [| |assumption]; apply mixed_near; auto. }
+  (* as computed *)
+  assert (FU : F upper) by apply RN_F. assert (FL : F lower) by apply RN_F.
+  pose proof (RN_diff lower upper FL FU) as E1. set (e := RN (lower - upper)) in *.
+  pose proof (RN_err (e * r)) as E2. set (p := RN (e * r)) in *. pose proof (RN_err (upper + p)) as E3.
+  set (v := RN (upper + p)) in *.
+  assert (LU : Rabs (lower - upper) <= n + 5 * (u * n)).
+  { apply Rabs_le_inv in P1. apply Rabs_le_inv in P2. apply Rabs_le. clear - P1 P2 B1 B2 N1. rewrite u_val in *. lra. }
+  assert (ER : Rabs ((e - (lower - upper)) * r) <= (1 + / 1000) * (u * n)).
+  { rewrite Rabs_mult, (Rabs_pos_eq r) by lra. apply Rle_trans with (Rabs (e - (lower - upper)) * 1);
+      [apply Rmult_le_compat_l; [apply Rabs_pos | lra]|]. clear - E1 LU N1. set (x := Rabs (lower - upper)) in *.
+    rewrite u_val in *. lra. }
+  assert (EB : Rabs (e * r) <= (1 + / 1000) * n).
+  { rewrite Rabs_mult, (Rabs_pos_eq r) by lra. apply Rle_trans with (Rabs e * 1);
+      [apply Rmult_le_compat_l; [apply Rabs_pos | lra]|].
+    replace e with ((e - (lower - upper)) + (lower - upper)) by ring. rewrite Rmult_1_r.
+    eapply Rle_trans; [apply Rabs_triang|]. clear - E1 LU N1. set (x := Rabs (lower - upper)) in *.
+    rewrite u_val in *. lra. }
+  assert (MM : Rabs (mixed upper lower r - M) <= (2 + / 100) * (u * n)) by (apply mixed_near; assumption).
+  assert (UP : Rabs (upper + p - M) <= (4 + / 50) * (u * n)).
+  { replace (upper + p - M) with ((mixed upper lower r - M) + (e - (lower - upper)) * r + (p - e * r)) by (unfold mixed;
+      ring). eapply Rle_trans; [apply Rabs_triang|]. eapply Rle_trans; [apply Rplus_le_compat_r, Rabs_triang|].
+    clear - E2 ER EB MM N1 T0 T. set (x := Rabs (e * r)) in *. rewrite u_val in *. lra. }
+  assert (UB : Rabs (upper + p) <= (1 + / 1000) * n).
+  { replace (upper + p) with ((upper + p - M) + M) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    rewrite (Rabs_pos_eq M) by lra. clear - UP B3 N1. rewrite u_val in *. lra. }
+  assert (V : Rabs (v - M) <= (5 + / 25) * (u * n)).
+  { replace (v - M) with ((v - (upper + p)) + (upper + p - M)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    clear - E3 UP UB N1 T0 T. set (x := Rabs (upper + p)) in *. rewrite u_val in *. lra. }
+  assert (VN : Rabs (v / n - M * / n) <= (5 + / 25) * u).
+  { replace (v / n - M * / n) with ((v - M) * / n) by (field; lra). rewrite Rabs_mult, (Rabs_pos_eq (/ n)) by lra.
+    replace ((5 + / 25) * u) with ((5 + / 25) * (u * n) * / n) by (field; lra). apply Rmult_le_compat_r; lra. }
+  pose proof (RN_err (v / n)) as E4. set (z := RN (v / n)) in *.
+  assert (MN : 0 <= M * / n <= 1) by (split; [apply Rmult_le_pos; lra | rewrite <- nn; apply Rmult_le_compat_r; lra]).
+  set (k := M * / n) in *. set (q := v / n) in *.
+  assert (QB : Rabs q <= 1 + / 1000).
+  { replace q with ((q - k) + k) by ring. eapply Rle_trans; [apply Rabs_triang|]. rewrite (Rabs_pos_eq k) by lra.
+    clear - VN MN. rewrite u_val in *. lra. }
+  set (f := mixed (mixed _ _ _) _ _) in *.
+  replace (z - f) with ((z - q) + (q - k) - (f - k)) by ring. unfold Rminus at 1.
+  eapply Rle_trans; [apply Rabs_triang|].
+  rewrite Rabs_Ropp. eapply Rle_trans; [apply Rplus_le_compat_r, Rabs_triang|].
+  clear - E4 QB VN KM T0 T. set (x := Rabs q) in *. rewrite u_val in *. lra.
+Qed.
+End Four.
+
 (* ---- A mixture of three colours by weights within e, the first within 2 e + 2 u ---- *)
 Definition tmixed (w1 w2 w3 c1 c2 c3 : R) := tdot (X w1 10) (X w2 10) (X w3 10) (X c1 10) (X c2 10) (X c3 10).
 Theorem MIXED_FACTOR_holds : forall w1 w2 w3 W1 W2 W3 c1 c2 c3 e b m bound, W1 + W2 + W3 = 1 -> 0 <= W1 -> 0 <= W2 ->

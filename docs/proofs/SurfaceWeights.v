@@ -82,9 +82,9 @@ Proof.
   assert (u * Rabs (dot / square) <= u * (1 + ((1 + 10 * u) * pe + (607 / 100) * u))) by (apply Rmult_le_compat_l;
     lra). rewrite u_val in *. lra.
 Qed.
-(* The bound, with the length of n as computed. *)
+(* The bound, with the length of n as computed, and without what underflows in a product. *)
 Variables length part' error : R.
-Hypotheses (Hlen : Rabs (length - L) <= 4 * u * L) (Hpart : (1 - 8 * u) * part <= part')
+Hypotheses (Hlen : Rabs (length - L) <= 4 * u * L) (Hpart : (1 - 8 * u) * part <= part' + / 100 * u * L)
   (Herror : (1 - 16 * u) * (SUM_FACTOR * ((part' + NORMAL_FACTOR * nu) / length) + ROUNDINGS) <= error).
 Theorem SUM_FACTOR_holds : Rabs (weight - x) <= error.
 Proof.
@@ -93,15 +93,26 @@ Proof.
   pose proof (len_pos (n1 - N1) (n2 - N2) (n3 - N3)). pose proof (len_pos (q1 - x * N1) (q2 - x * N2) (q3 - x * N3)).
     apply Rabs_le_inv in Hlen.
   assert (l0 : 0 < length) by (rewrite u_val in *; lra).
-  assert (K : (1 - 20 * u) * ((part + nu) / L) <= (part' + 31 / 10 * nu) / length).
+  assert (K : (1 - 20 * u) * ((part + nu) / L) <= (part' + 31 / 10 * nu) / length + / 50 * u).
   { apply Rmult_le_reg_r with (L * length); [apply Rmult_lt_0_compat; assumption|].
+    rewrite Rmult_plus_distr_r.
     replace ((1 - 20 * u) * ((part + nu) / L) * (L * length)) with ((1 - 20 * u) * (part + nu) * length) by (field;
       lra).
     replace ((part' + 31 / 10 * nu) / length * (L * length)) with ((part' + 31 / 10 * nu) * L) by (field; lra).
     apply Rle_trans with ((1 - 20 * u) * (part + nu) * ((1 + 4 * u) * L)).
     - apply Rmult_le_compat_l; [apply Rmult_le_pos; [rewrite u_val; lra | lra] | lra].
-    - replace ((1 - 20 * u) * (part + nu) * ((1 + 4 * u) * L)) with ((1 - 20 * u) * (1 + 4 * u) * (part + nu) * L) by
-      ring. apply Rmult_le_compat_r; [lra|]. rewrite u_val in *. lra. }
+    - assert (PL : (1 - 8 * u) * part * L <= (part' + / 100 * u * L) * L) by (apply Rmult_le_compat_r; lra).
+      assert (LL : (1 - 4 * u) * (L * L) <= L * length).
+      { replace ((1 - 4 * u) * (L * L)) with (L * ((1 - 4 * u) * L)) by ring. apply Rmult_le_compat_l; lra. }
+      assert (pL : 0 <= part * L) by (apply Rmult_le_pos; lra). assert (nL : 0 <= nu * L) by (apply Rmult_le_pos; lra).
+      assert (L2 : 0 < L * L) by (apply Rmult_lt_0_compat; assumption).
+      set (a := part * L) in *. set (b := nu * L) in *. set (c := L * L) in *. set (d := L * length) in *.
+      replace ((1 - 20 * u) * (part + nu) * ((1 + 4 * u) * L)) with ((1 - 20 * u) * (1 + 4 * u) * (a + b)) by (unfold a,
+        b; ring).
+      replace ((part' + 31 / 10 * nu) * L) with (part' * L + 31 / 10 * b) by (unfold b; ring).
+      replace ((1 - 8 * u) * part * L) with ((1 - 8 * u) * a) in PL by (unfold a; ring).
+      replace ((part' + / 100 * u * L) * L) with (part' * L + / 100 * u * c) in PL by (unfold c; ring).
+      set (f := part' * L) in *. clear - PL LL pL nL L2. clearbody a b c d f. rewrite u_val in *. lra. }
   set (y := (part + nu) / L) in *. set (z := (part' + 31 / 10 * nu) / length) in *. clear - K P. rewrite u_val in *.
     lra.
 Qed.
@@ -140,7 +151,7 @@ Definition tpart x2 x3 y2 z2 y3 z3 := tminor (X x2 410) (D z3 y3 301) (X x3 410)
 Variables q1 q2 q3 tiny : R.
 Hypotheses (H1 : plain (tpart p2 p3 a2 b2 a3 b3) q1) (H2 : plain (tpart p3 p1 a3 b3 a1 b1) q2) (H3 : plain (tpart p1
   p2 a1 b1 a2 b2) q3)
-  (Htiny : 3 * bp (-300) <= tiny).
+  (Htiny : 3 * bp (-1068) <= tiny).
 Theorem PART_FACTOR_holds : (1 - 16 * u) * (E * (PART_FACTOR * (eps + 102 / 100 * u * norm1 p1 p2 p3) + 61 / 10 * u *
   norm1 p1 p2 p3)) + tiny <= part ->
   len (q1 - (P2 * f3 - P3 * f2)) (q2 - (P3 * f1 - P1 * f3)) (q3 - (P1 * f2 - P2 * f1)) <= part.
@@ -152,9 +163,9 @@ Proof.
   pose proof (plain_error_at _ _ 3 (low (tpart p2 p3 a2 b2 a3 b3)) H1 B1 eq_refl eq_refl ltac:(lia)) as Q1.
   pose proof (plain_error_at _ _ 3 (low (tpart p3 p1 a3 b3 a1 b1)) H2 B2 eq_refl eq_refl ltac:(lia)) as Q2.
   pose proof (plain_error_at _ _ 3 (low (tpart p1 p2 a1 b1 a2 b2)) H3 B3 eq_refl eq_refl ltac:(lia)) as Q3.
-  assert (T1 : bp (low (tpart p2 p3 a2 b2 a3 b3)) <= bp (-300)) by (apply bp_le; vm_compute; discriminate).
-  assert (T2 : bp (low (tpart p3 p1 a3 b3 a1 b1)) <= bp (-300)) by (apply bp_le; vm_compute; discriminate).
-  assert (T3 : bp (low (tpart p1 p2 a1 b1 a2 b2)) <= bp (-300)) by (apply bp_le; vm_compute; discriminate).
+  assert (T1 : bp (low (tpart p2 p3 a2 b2 a3 b3)) <= bp (-1068)) by (apply bp_le; vm_compute; discriminate).
+  assert (T2 : bp (low (tpart p3 p1 a3 b3 a1 b1)) <= bp (-1068)) by (apply bp_le; vm_compute; discriminate).
+  assert (T3 : bp (low (tpart p1 p2 a1 b1 a2 b2)) <= bp (-1068)) by (apply bp_le; vm_compute; discriminate).
   set (w1 := bp (low (tpart p2 p3 a2 b2 a3 b3))) in *. set (w2 := bp (low (tpart p3 p1 a3 b3 a1 b1))) in *. set (w3 :=
     bp (low (tpart p1 p2 a1 b1 a2 b2))) in *. clearbody w1 w2 w3.
   unfold tpart, tminor in Q1, Q2, Q3. cbn [exact size] in Q1, Q2, Q3. fold f1 f2 f3 in Q1, Q2, Q3.
@@ -196,3 +207,73 @@ Proof.
     H0. rewrite u_val in *. lra.
 Qed.
 End Part.
+
+(* ---- Range: what underflows is nothing beside a normal whose square is at least 2^-900 ---- *)
+Theorem underflow_of_weights : forall n1 n2 n3 q1 q2 q3 dot square,
+  Rabs n1 <= bp 460 -> Rabs n2 <= bp 460 -> Rabs n3 <= bp 460 -> Rabs q1 <= bp 720 -> Rabs q2 <= bp 720 ->
+  Rabs q3 <= bp 720 ->
+  plain (tdot (X n1 460) (X n2 460) (X n3 460) (X n1 460) (X n2 460) (X n3 460)) square ->
+  plain (tdot (X q1 720) (X q2 720) (X q3 720) (X n1 460) (X n2 460) (X n3 460)) dot -> bp (-900) <= square ->
+  let L := len n1 n2 n3 in
+  0 < L /\ Rabs (square - L * L) <= (3 + / 100) * u * (L * L) /\ Rabs (RN (sqrt square) - L) <= 4 * u * L /\
+  Rabs (dot - (q1 * n1 + q2 * n2 + q3 * n3)) <= (3 + / 100) * u * (len q1 q2 q3 * L) + / 1000 * u * (L * L) /\
+  3 * bp (-1068) <= / 200 * u * L.
+Proof.
+  intros n1 n2 n3 q1 q2 q3 dot square N1 N2 N3 Q1 Q2 Q3 Hs Hd S0 L. pose proof u_pos as U. unfold tdot in *.
+  error_of Hs E. error_of Hd K. rewrite !abs_sq in E. rewrite <- len_sq in E. fold L in E.
+  assert (L0 : 0 <= L) by apply len_pos. pose proof (bp_pos (-901)) as B1.
+  assert (B : bp (-900) = 2 * bp (-901)) by (change (-900)%Z with (1 + -901)%Z; rewrite bp_add, bp_1; ring).
+  assert (T : bp (-1065) <= / 1000000000000 * bp (-901)) by (apply bp_part12; lia).
+  assert (T2 : bp (-1065) <= / 1000000 * u * bp (-901)).
+  { apply Rle_trans with (bp (-20) * u * bp (-901)); [unfold u; rewrite <- !bp_add; apply bp_le; lia|].
+    apply Rmult_le_compat_r; [lra|]. apply Rmult_le_compat_r; simpl; lra. }
+  assert (SL : bp (-901) <= L * L).
+  { apply Rabs_le_inv in E. assert (0 <= L * L) by apply sq_pos. clear - E B S0 T B1 H. set (x := L * L) in *.
+    clearbody x.
+    rewrite u_val in *. lra. }
+  assert (Lp : 0 < L).
+  { destruct (Rle_lt_or_eq_dec 0 L L0) as [P|Z]; [exact P|]. rewrite <- Z, Rmult_0_l in SL. lra. }
+  assert (TL : bp (-1065) <= / 1000000 * u * (L * L)).
+  { eapply Rle_trans; [exact T2|]. apply Rmult_le_compat_l; [lra | exact SL]. }
+  assert (SQ : Rabs (square - L * L) <= (3 + / 100) * u * (L * L)).
+  { eapply Rle_trans; [exact E|]. assert (0 <= u * (L * L)) by (apply Rmult_le_pos; [lra | apply sq_pos]). lra. }
+  split; [exact Lp|]. split; [exact SQ|]. split; [|split].
+  - set (y := sqrt square). assert (YY : y * y = square) by (apply sqrt_sqrt; lra).
+    assert (Y0 : 0 <= y) by apply sqrt_pos.
+    assert (YL : 99 / 100 * L <= y).
+    { apply below_root; [exact Y0|]. rewrite YY. replace (99 / 100 * L * (99 / 100 * L)) with (99 / 100 * (99 / 100) *
+        (L *
+        L)) by ring. apply Rabs_le_inv in SQ. assert (0 <= L * L) by apply sq_pos. clear - SQ H. rewrite u_val in *.
+        lra. }
+    assert (N : Rabs (y - L) <= 2 * u * L).
+    { apply Rmult_le_reg_r with (y + L); [lra|]. rewrite <- (Rabs_pos_eq (y + L)) at 1 by lra. rewrite <- Rabs_mult.
+      replace ((y - L) * (y + L)) with (square - L * L) by (rewrite <- YY; ring). eapply Rle_trans; [exact SQ|].
+      replace ((3 + / 100) * u * (L * L)) with (u * L * ((3 + / 100) * L)) by ring.
+      replace (2 * u * L * (y + L)) with (u * L * (2 * (y + L))) by ring.
+      apply Rmult_le_compat_l; [apply Rmult_le_pos; lra | lra]. }
+    assert (Yl : bp (-451) <= y).
+    { apply below_root; [exact Y0|]. rewrite YY, bp_sq. apply Rle_trans with (2 := S0). apply bp_le. lia. }
+    pose proof (RN_normal y) as R. rewrite (Rabs_pos_eq y) in R by exact Y0.
+    assert (R' : Rabs (RN y - y) <= u * y) by (apply R; apply Rle_trans with (2 := Yl); apply bp_le; lia).
+    replace (RN y - L) with ((RN y - y) + (y - L)) by ring. eapply Rle_trans; [apply Rabs_triang|].
+    apply Rabs_le_inv in N as N'. clear - R' N N' Lp. set (a := Rabs (y - L)) in *. rewrite u_val in *. lra.
+  - eapply Rle_trans; [exact K|]. assert (W : Rabs q1 * Rabs n1 + Rabs q2 * Rabs n2 + Rabs q3 * Rabs n3 <= len q1 q2
+      q3 * L).
+    { eapply Rle_trans; [apply Rle_abs|]. eapply Rle_trans; [apply len_dot|]. right. unfold L, len.
+      now rewrite !abs_sq. }
+    assert (UL : 0 <= u * (L * L)) by (apply Rmult_le_pos; [lra | apply sq_pos]).
+    assert (W2 : (3 + / 1000) * u * (Rabs q1 * Rabs n1 + Rabs q2 * Rabs n2 + Rabs q3 * Rabs n3) <= (3 + / 100) * u *
+      (len q1
+      q2 q3 * L)).
+    { apply Rmult_le_compat; try lra. pose proof (Rabs_pos q1). pose proof (Rabs_pos q2). pose proof (Rabs_pos q3).
+      pose proof (Rmult_le_pos _ _ H (Rabs_pos n1)). pose proof (Rmult_le_pos _ _ H0 (Rabs_pos n2)).
+      pose proof (Rmult_le_pos _ _ H1 (Rabs_pos n3)). lra. }
+    lra.
+  - assert (LL : bp (-451) <= L).
+    { apply below_root; [exact L0|]. rewrite bp_sq. apply Rle_trans with (2 := SL). apply bp_le. lia. }
+    apply Rle_trans with (bp (-8) * u * bp (-451)).
+    + apply Rle_trans with (bp 2 * bp (-1068)); [pose proof (bp_pos (-1068)); apply Rmult_le_compat_r; simpl; lra|].
+      unfold u. rewrite <- !bp_add. apply bp_le. lia.
+    + pose proof (bp_pos (-451)). apply Rmult_le_compat; try lra; [apply Rmult_le_pos; [apply Rlt_le, bp_pos | lra]|].
+      apply Rmult_le_compat_r; simpl; lra.
+Qed.
