@@ -277,4 +277,42 @@ mod tests {
         }
         assert!(try_rays(&tile(eye, DVec3::new(0.0, -0.0, 1.0), 1e-3), u32::MAX).is_some(), "along an axis");
     }
+
+    /// A fan of rays in a plane across an axis, as a line scanner casts it: one component is zero in all of them, with
+    /// either sign. Single rays give the same answers.
+    #[test]
+    fn a_fan_in_a_plane_across_an_axis_is_a_tile() {
+        let random = &mut Random::new(7);
+        let ball = |random: &mut Random| Sphere::new(0.5 * random.point(), 0.03).unwrap();
+        let triangle = |random: &mut Random| {
+            let at = 0.5 * random.point();
+            let [a, b, c] = [(); 3].map(|()| at + 0.05 * random.point());
+            crate::Triangle::new(a, b, c).unwrap()
+        };
+        let (mut hits, mut tiles) = (0, 0);
+        for round in 0..60 {
+            let tree = match round % 3 {
+                0 => Bvh::new((0..2_000).map(|_| ball(random)).collect(), vec![]),
+                1 => Bvh::new(vec![], (0..2_000).map(|_| triangle(random)).collect()),
+                _ => Bvh::new((0..500).map(|_| ball(random)).collect(), (0..500).map(|_| triangle(random)).collect()),
+            };
+            let axis = round / 3 % 3;
+            let mut eye = 0.3 * random.point();
+            eye[(axis + 1) % 3] = -2.0;
+            let ray = |i: u32| {
+                let mut direction = DVec3::splat(0.05 + 0.002 * f64::from(i));
+                direction[axis] = if round % 2 == 0 { 0.0 } else { -0.0 };
+                direction[(axis + 1) % 3] = 1.0;
+                Ray::new(eye, direction).unwrap()
+            };
+            let rays: Vec<Ray> = (0..64).map(ray).collect();
+            tiles += usize::from(dispatch!(Level::new(), simd => attempt(simd, &tree, &rays, u32::MAX)).is_some());
+            let mut together = vec![None; rays.len()];
+            tree.closest_batch(&rays, AHEAD, &mut together);
+            let alone: Vec<Option<Hit>> = rays.iter().map(|ray| tree.closest(ray, AHEAD)).collect();
+            assert_eq!(together, alone, "{round}");
+            hits += alone.iter().flatten().count();
+        }
+        assert!(tiles > 30 && hits > 200, "{tiles} {hits}");
+    }
 }

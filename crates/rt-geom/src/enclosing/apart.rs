@@ -112,6 +112,7 @@ fn is_inside(sphere: &Sphere, bracket: &Bracket) -> bool {
 #[cfg(test)]
 mod tests {
     use oracle::Random;
+    use rt_math::exact::power_of_two;
 
     use super::super::enclosing_sphere;
     use super::super::exact::contains_exactly;
@@ -145,5 +146,31 @@ mod tests {
             supports[found.support().len()] += 1;
         }
         assert!(supports[2] > 500 && supports[3] > 500, "{supports:?}");
+    }
+
+    /// Three and four of any size, where squares under- and overflow too: what is in is in exactly, and the radius is that
+    /// of the same spheres at the size of 1, up to a few roundings.
+    #[test]
+    fn three_and_four_of_any_size_are_enclosed() {
+        let random = &mut Random::new(13);
+        for exponent in [-900, -600, -420, -300, -200, -135, -128, 0, 150, 160, 170, 300, 450, 600, 900] {
+            for round in 0..200 {
+                let size = power_of_two(exponent);
+                let ball = |center: DVec3, radius: f64| Sphere::new(center, radius).unwrap();
+                let set: Vec<Sphere> = (0..3 + round % 2).map(|_| ball(random.point(), 0.3 * random.share())).collect();
+                let scaled: Vec<Sphere> = set.iter().map(|s| ball(size * s.center(), size * s.radius())).collect();
+                let (one, found) = (enclosing_sphere(&set).unwrap(), enclosing_sphere(&scaled).unwrap());
+                for sphere in &scaled {
+                    let (center, radius) = (found.sphere.center(), found.sphere.radius());
+                    assert!(contains_exactly(center, radius, sphere), "2^{exponent}: {scaled:?} {found:?}");
+                }
+                assert!(
+                    found.sphere.radius() / size <= one.sphere.radius() * (1.0 + 16.0 * U),
+                    "2^{exponent}: {set:?}"
+                );
+                let gap = found.sphere.radius() - found.lower_bound;
+                assert!((0.0..=16.0 * U * found.sphere.radius()).contains(&gap), "2^{exponent}: {scaled:?} {found:?}");
+            }
+        }
     }
 }
