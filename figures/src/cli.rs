@@ -13,7 +13,7 @@ use clap_complete::Shell;
 
 use crate::figure::{FIGURES, Figure};
 use crate::generate::{ColoredBall, Rule};
-use crate::import::source::Format;
+use crate::import::foreign::Format;
 use crate::options::{ChangeOptions, Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
 use crate::output::{self, Format as PictureFormat, Target};

@@ -15,13 +15,13 @@ use serde::Serialize;
 use crate::camera::{Size, View};
 use crate::certify::Certified;
 use crate::figure::Figure;
-use crate::load::Changes;
 use crate::objects::{Method, Objects};
 use crate::options::{Background, ChangeOptions, DrawOptions, PictureSize};
 use crate::outcome::{Failure, to_stdout};
 use crate::output::{self, Destination, Format, NO_ALPHA, Picture, Target};
 use crate::render::Renderer;
 use crate::scene::Scene;
+use crate::scene_file::Changes;
 use crate::tile::{self, Label};
 use crate::{load, memory, stderr};
 

@@ -6,19 +6,7 @@ use crate::import;
 use crate::import::source::Source;
 use crate::outcome::Failure;
 use crate::scene::Scene;
-use crate::scene_file;
-use crate::stage::Direction;
-
-/// What the command line changes in what is loaded.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Changes {
-    /// The frame of a bulk file, from 1.
-    pub frame: Option<u64>,
-    /// A factor for all radii; finite and more than 0.
-    pub radius_scale: Option<f64>,
-    /// Where objects on the stage are seen from.
-    pub view: Option<Direction>,
-}
+use crate::scene_file::{self, Changes};
 
 /// Loads the file at `path`, or stdin for `-`.
 ///

@@ -23,8 +23,8 @@ use crate::assets::asset;
 use crate::camera::{Camera, CameraError};
 use crate::import::spheres::Options;
 use crate::import::{load_mesh, load_spheres};
-use crate::load::Changes;
 use crate::scene::{DEFAULT_MATERIAL, Filter, Look, LookIndex, Paint, Scene};
+use crate::stage::Direction;
 use crate::text::{escaped, file_name, listed, meant, quoted, without_mark};
 use crate::texture_file;
 pub use problem::SceneError;
@@ -37,6 +37,17 @@ use tables::{
 /// Of a longer scene file the elements are parsed in groups of about this many bytes, so that memory is that of the
 /// text, twice, and of the scene.
 const GROUP_BYTES: usize = 1 << 18;
+
+/// What the command line changes in what is loaded.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Changes {
+    /// The frame of a bulk file, from 1.
+    pub frame: Option<u64>,
+    /// A factor for all radii; finite and more than 0.
+    pub radius_scale: Option<f64>,
+    /// Where objects on the stage are seen from.
+    pub view: Option<Direction>,
+}
 
 /// Where the files that a scene names are looked up.
 #[derive(Clone, Copy)]

@@ -3,8 +3,43 @@
 
 use std::path::Path;
 
-use super::source::Format;
 use super::stl;
+
+/// A format that is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// A scene, in TOML.
+    Scene,
+    /// Spheres.
+    Xyz,
+    Pdb,
+    /// Meshes.
+    Obj,
+    Ply,
+    Stl,
+}
+
+impl Format {
+    /// The name of the format, and the endings of its files.
+    pub(super) const ALL: [(Self, &'static str, &'static [&'static str]); 6] = [
+        (Self::Scene, "a scene", &["toml"]),
+        (Self::Xyz, "XYZ", &["xyz", "extxyz"]),
+        (Self::Pdb, "PDB", &["pdb", "ent"]),
+        (Self::Obj, "OBJ", &["obj"]),
+        (Self::Ply, "PLY", &["ply"]),
+        (Self::Stl, "STL", &["stl"]),
+    ];
+
+    /// The format that an ending, in lower case, stands for.
+    pub(crate) fn of_ending(ending: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, _, endings)| endings.contains(&ending)).map(|(format, ..)| *format)
+    }
+
+    pub(super) fn name(self) -> (&'static str, &'static str) {
+        let found = Self::ALL.iter().find(|(format, ..)| *format == self);
+        found.map_or(("", ""), |(_, name, endings)| (name, endings[0]))
+    }
+}
 
 /// What a file is, by how it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

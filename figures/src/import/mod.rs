@@ -4,7 +4,7 @@
 
 mod blocks;
 mod elements;
-mod foreign;
+pub(crate) mod foreign;
 pub mod mesh;
 pub mod mtl;
 pub mod obj;
@@ -23,10 +23,11 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::scene::{Look, Scene};
+use foreign::Format;
 use mesh::Mesh;
 use problem::FileProblem;
 pub use problem::ImportError;
-use source::{Format, Source};
+use source::Source;
 use spheres::{Options, Spheres};
 pub(crate) use words::{decimal, shown};
 

@@ -9,9 +9,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::obj::rest;
 use super::problem::LONGEST_LINE;
-use super::words::{Words, number};
+use super::words::{Words, number, rest};
 use crate::text::{file_name, quoted};
 
 /// More of a library is not read.

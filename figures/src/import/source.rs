@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
-use super::foreign::{self, Known};
+use super::foreign::{self, Format, Known};
 use super::problem::{FileProblem, ImportError};
 use crate::text::file_name;
 
@@ -15,42 +15,6 @@ const MOST_UNPACKED: u64 = 256 << 20;
 const MOST_TIMES: u64 = 64;
 /// So many bytes at the start tell the format.
 const START: u64 = 4096;
-
-/// A format that is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Format {
-    /// A scene, in TOML.
-    Scene,
-    /// Spheres.
-    Xyz,
-    Pdb,
-    /// Meshes.
-    Obj,
-    Ply,
-    Stl,
-}
-
-impl Format {
-    /// The name of the format, and the endings of its files.
-    pub(super) const ALL: [(Self, &'static str, &'static [&'static str]); 6] = [
-        (Self::Scene, "a scene", &["toml"]),
-        (Self::Xyz, "XYZ", &["xyz", "extxyz"]),
-        (Self::Pdb, "PDB", &["pdb", "ent"]),
-        (Self::Obj, "OBJ", &["obj"]),
-        (Self::Ply, "PLY", &["ply"]),
-        (Self::Stl, "STL", &["stl"]),
-    ];
-
-    /// The format that an ending, in lower case, stands for.
-    pub(crate) fn of_ending(ending: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, _, endings)| endings.contains(&ending)).map(|(format, ..)| *format)
-    }
-
-    fn name(self) -> (&'static str, &'static str) {
-        let found = Self::ALL.iter().find(|(format, ..)| *format == self);
-        found.map_or(("", ""), |(_, name, endings)| (name, endings[0]))
-    }
-}
 
 /// A file that was opened, or stdin for `-`; what is packed with gzip is unpacked while it is read.
 pub(crate) struct Source {

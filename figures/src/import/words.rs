@@ -21,6 +21,11 @@ impl<'a> Iterator for Words<'a> {
     }
 }
 
+/// What follows the keyword in a line: a name, which may have spaces in it.
+pub(super) fn rest<'a>(line: &'a [u8], keyword: &[u8]) -> &'a [u8] {
+    line.trim_ascii_start().get(keyword.len()..).unwrap_or_default().trim_ascii()
+}
+
 /// Reads a number as [`number`] does; `None` for what is none.
 pub(crate) fn decimal(word: &[u8]) -> Option<f64> {
     number(word).ok()

@@ -2,8 +2,9 @@
 //! line.
 #![no_main]
 
-use figures::load::{Changes, load};
+use figures::load::load;
 use figures::outcome::Failure;
+use figures::scene_file::Changes;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -20,7 +20,7 @@ use glam::DVec3;
 use super::mesh::{FaceColor, Faces, Mesh, NO_MATERIAL, Vertex, Vertices};
 use super::mtl::Library;
 use super::problem::{FileProblem, ImportError, LONGEST_LINE, LineProblem};
-use super::words::{Words, number, shown};
+use super::words::{Words, number, rest, shown};
 use crate::text::{quoted, without_mark};
 use quick::{Block, Rest};
 
@@ -229,11 +229,6 @@ impl Reader {
 
 /// More material libraries than this are not read.
 const MOST_LIBRARIES: usize = 64;
-
-/// What follows the keyword in a line: a name, which may have spaces in it.
-pub(super) fn rest<'a>(line: &'a [u8], keyword: &[u8]) -> &'a [u8] {
-    line.trim_ascii_start().get(keyword.len()..).unwrap_or_default().trim_ascii()
-}
 
 /// Reads a vertex.
 fn vertex<'a>(words: impl Iterator<Item = &'a [u8]>) -> Result<Vertex, LineProblem> {
