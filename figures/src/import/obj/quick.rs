@@ -15,7 +15,7 @@ use super::super::blocks::{BLOCK, PIECE};
 use super::super::mesh::Vertices;
 use super::super::problem::{LONGEST_LINE, LineProblem};
 use super::super::words::Scanner;
-use super::{PASSED_OVER, Reader, statement};
+use super::statement::{PASSED_OVER, Reader, statement};
 
 /// Whole statements of the file, and what was read of them.
 #[derive(Default)]
