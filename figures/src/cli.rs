@@ -16,7 +16,7 @@ use crate::generate::{ColoredBall, Rule};
 use crate::import::foreign::Format;
 use crate::options::{ChangeOptions, Depth, DrawOptions, PictureSize};
 use crate::outcome::{Failure, exit_code, parsed, to_stdout};
-use crate::output::{self, Format as PictureFormat, Target};
+use crate::output::{self, PictureFormat, Target};
 use crate::text::meant;
 use crate::{ask, convert, draw, generate, memory, stderr};
 

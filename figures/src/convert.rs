@@ -5,7 +5,7 @@ use std::path::Path;
 use rt_io::{Limits, read_image};
 
 use crate::outcome::Failure;
-use crate::output::{Format, Picture, Target};
+use crate::output::{Picture, PictureFormat, Target};
 use crate::{memory, stderr};
 
 /// Reads the image `input`, in any format that is read, and writes it to `output`.
@@ -18,7 +18,7 @@ use crate::{memory, stderr};
 pub fn convert(
     input: &Path,
     output: &Path,
-    format: Option<Format>,
+    format: Option<PictureFormat>,
     maxval: Option<u16>,
     quiet: bool,
 ) -> Result<(), Failure> {

@@ -18,7 +18,7 @@ use crate::figure::Figure;
 use crate::objects::{Method, Objects};
 use crate::options::{Background, ChangeOptions, DrawOptions, PictureSize};
 use crate::outcome::{Failure, to_stdout};
-use crate::output::{self, Destination, Format, NO_ALPHA, Picture, Target};
+use crate::output::{self, Destination, NO_ALPHA, Picture, PictureFormat, Target};
 use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::scene_file::Changes;
@@ -72,7 +72,7 @@ pub fn figures(figures: &[Figure], folder: bool, options: &DrawOptions) -> Resul
     if folder && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("six pictures need a folder: --out DIR".to_owned()));
     }
-    let destination = destination(options, folder, Format::Ppm, false)?;
+    let destination = destination(options, folder, PictureFormat::Ppm, false)?;
     let pool = pool(options)?;
     figures.iter().try_for_each(|figure| draw(&figure.name(), || Ok(figure.scene()?), &destination, options, &pool))
 }
@@ -96,7 +96,7 @@ pub fn files(paths: &[PathBuf], changes: &ChangeOptions, options: &DrawOptions) 
     let &ChangeOptions { view, background, radius_scale, frame } = changes;
     // A tile is a PPM, or with transparency a PNG.
     let transparent = background == Some(Background::None);
-    let default = if options.tile.is_some() && !transparent { Format::Ppm } else { Format::Png };
+    let default = if options.tile.is_some() && !transparent { PictureFormat::Ppm } else { PictureFormat::Png };
     let destination = destination(options, several, default, transparent)?;
     let pool = pool(options)?;
     let changes = &Changes { view, radius_scale, frame };
@@ -131,17 +131,17 @@ pub(crate) fn load(path: &Path) -> Result<Scene, Failure> {
 fn destination(
     options: &DrawOptions,
     folder: bool,
-    default: Format,
+    default: PictureFormat,
     transparent: bool,
 ) -> Result<Destination, Failure> {
     if options.json && options.out.as_deref() == Some(Path::new("-")) {
         return Err(Failure::Usage("--json and --out - both write to stdout; choose one".to_owned()));
     }
     let destination = Destination::new(options.out.as_deref(), options.format, folder, default)?;
-    if transparent && destination.format() != Format::Png {
+    if transparent && destination.format() != PictureFormat::Png {
         return Err(Failure::Usage(NO_ALPHA.to_owned()));
     }
-    if options.tile.is_some() && destination.format() == Format::Png && !transparent {
+    if options.tile.is_some() && destination.format() == PictureFormat::Png && !transparent {
         return Err(Failure::Usage("a tile is a PPM; merge can write PNG".to_owned()));
     }
     Ok(destination)
@@ -240,22 +240,24 @@ fn draw(
 ///
 /// # Errors
 /// What is wrong with the tiles, or why the picture could not be written.
-pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<Format>) -> Result<(), Failure> {
+pub fn merge(output: &Path, tiles: &[PathBuf], format: Option<PictureFormat>) -> Result<(), Failure> {
     let target = Target::exactly(output);
     // A name that is not written is refused before any work.
     let named = target.format(format)?;
     let picture = tile::merge(tiles)?;
     let said = format.is_some() || output::ending(output).is_some();
     let format = match picture {
-        Picture::Transparent(_) if said && named != Format::Png => return Err(Failure::Usage(NO_ALPHA.to_owned())),
-        Picture::Transparent(_) => Format::Png,
+        Picture::Transparent(_) if said && named != PictureFormat::Png => {
+            return Err(Failure::Usage(NO_ALPHA.to_owned()));
+        }
+        Picture::Transparent(_) => PictureFormat::Png,
         Picture::Opaque(_) => named,
     };
     target.write(&picture, None, format)
 }
 
 /// Checks that there is memory for a picture while it is drawn and written.
-fn check_memory(channels: u64, width: u32, rows: usize, maxval: u16, format: Format) -> Result<(), Failure> {
+fn check_memory(channels: u64, width: u32, rows: usize, maxval: u16, format: PictureFormat) -> Result<(), Failure> {
     let samples = channels * u64::from(width) * rows as u64;
     // It is drawn with two bytes a sample; where one is enough, they are copied then.
     let (held, copy) = if maxval <= 255 && channels == 3 { (samples, samples) } else { (2 * samples, 0) };

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 
 use crate::objects::Method;
-use crate::output::Format;
+use crate::output::PictureFormat;
 use crate::stage::Direction;
 use crate::tile::Tile;
 
@@ -34,7 +34,7 @@ pub struct DrawOptions {
     /// The format to write, whatever the name [default: by the ending of FILE, else PNG for `render`, PPM
     /// for the six figures]
     #[arg(long)]
-    pub format: Option<Format>,
+    pub format: Option<PictureFormat>,
     /// Bits per sample
     #[arg(long, default_value = "8")]
     pub depth: Depth,

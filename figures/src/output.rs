@@ -42,7 +42,7 @@ pub(crate) const NO_ALPHA: &str = "a picture without a background is a PNG; PPM 
 
 /// The format of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum PictureFormat {
     /// Raw PPM (P6).
     Ppm,
     /// Plain PPM (P3): numbers as text.
@@ -51,7 +51,7 @@ pub enum Format {
     Png,
 }
 
-impl Format {
+impl PictureFormat {
     /// The usual ending of such a file.
     pub fn ending(self) -> &'static str {
         match self {
@@ -145,7 +145,7 @@ fn ends_in_slash(path: &Path) -> bool {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Destination {
     place: OutPlace,
-    format: Format,
+    format: PictureFormat,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -163,7 +163,12 @@ impl Destination {
     ///
     /// # Errors
     /// Wrong usage: no format asked for, and an ending that is not written, or a new folder with a name like a file's.
-    pub fn new(out: Option<&Path>, format: Option<Format>, folder: bool, default: Format) -> Result<Self, Failure> {
+    pub fn new(
+        out: Option<&Path>,
+        format: Option<PictureFormat>,
+        folder: bool,
+        default: PictureFormat,
+    ) -> Result<Self, Failure> {
         let out = out.unwrap_or(Path::new("out/"));
         let place = if out == Path::new("-") {
             OutPlace::Stdout
@@ -174,7 +179,7 @@ impl Destination {
         };
         let format = match (format, &place) {
             (Some(format), _) => format,
-            (None, OutPlace::File(path)) => Format::of(path, default)?,
+            (None, OutPlace::File(path)) => PictureFormat::of(path, default)?,
             (None, OutPlace::Folder(path)) => {
                 check_new_folder(path)?;
                 default
@@ -185,7 +190,7 @@ impl Destination {
     }
 
     /// The format of the pictures.
-    pub fn format(&self) -> Format {
+    pub fn format(&self) -> PictureFormat {
         self.format
     }
 
@@ -225,12 +230,12 @@ impl Target {
     /// The format to write: the one asked for, else by the name, else PPM.
     ///
     /// # Errors
-    /// As [`Format::of`].
-    pub fn format(&self, asked: Option<Format>) -> Result<Format, Failure> {
+    /// As [`PictureFormat::of`].
+    pub fn format(&self, asked: Option<PictureFormat>) -> Result<PictureFormat, Failure> {
         match (asked, self) {
             (Some(format), _) => Ok(format),
-            (None, Self::Stdout) => Ok(Format::Ppm),
-            (None, Self::File(path)) => Format::of(path, Format::Ppm),
+            (None, Self::Stdout) => Ok(PictureFormat::Ppm),
+            (None, Self::File(path)) => PictureFormat::of(path, PictureFormat::Ppm),
         }
     }
 
@@ -238,7 +243,7 @@ impl Target {
     ///
     /// # Errors
     /// What the system says, with the path.
-    pub fn write(&self, picture: &Picture, comment: Option<&str>, format: Format) -> Result<(), Failure> {
+    pub fn write(&self, picture: &Picture, comment: Option<&str>, format: PictureFormat) -> Result<(), Failure> {
         self.write_with(|out| format.write(picture, comment, out))
     }
 

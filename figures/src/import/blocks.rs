@@ -1,24 +1,32 @@
-//! A source in blocks of whole lines.
+//! A source line by line, or in blocks of whole lines.
 
-use std::io::{self, Read};
+use std::io::{BufRead, Read};
 
-use super::problem::{LONGEST_LINE, LineProblem};
+use super::problem::{Broken, FileProblem, ImportError, LONGEST_LINE, LONGEST_RECORD, LineProblem};
 
 /// The size of a block, unless a line is longer. It stays in the cache of a core until it is read. (Tests have many.)
 pub(super) const BLOCK: usize = if cfg!(test) { 1 << 10 } else { 1 << 20 };
 /// Fewer bytes than this are not worth a thread.
 pub(super) const PIECE: usize = BLOCK >> 4;
 
-/// Why reading ended early.
-pub(super) enum Broken {
-    Read(io::Error),
-    Line(LineProblem),
-}
-
-impl From<LineProblem> for Broken {
-    fn from(problem: LineProblem) -> Self {
-        Self::Line(problem)
+/// Reads the next line, with its end, into `bytes`, and counts it; false at the end of the source.
+///
+/// # Errors
+/// What is wrong with the line, in the file called `name`: it has [`LONGEST_RECORD`] bytes, or cannot be read.
+pub(super) fn next_record(
+    source: &mut impl BufRead,
+    bytes: &mut Vec<u8>,
+    line: &mut usize,
+    name: &str,
+) -> Result<bool, ImportError> {
+    bytes.clear();
+    let read = source.by_ref().take(LONGEST_RECORD).read_until(b'\n', bytes);
+    let read = read.map_err(|source| FileProblem::Read { path: name.to_owned(), source })?;
+    *line += usize::from(read > 0);
+    if read as u64 == LONGEST_RECORD {
+        return Err(ImportError::in_line(name, *line, LineProblem::LongRecord));
     }
+    Ok(read > 0)
 }
 
 /// The source in blocks that end at a line's end.

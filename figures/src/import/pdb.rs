@@ -8,19 +8,17 @@
 //!
 //! Source: Worldwide Protein Data Bank, "Protein Data Bank Contents Guide: Atomic Coordinate Entry Format", 3.30, 2012.
 
-use std::io::{BufRead, Read};
+use std::io::BufRead;
 
 use glam::DVec3;
 use rt_geom::Sphere;
 
+use super::blocks::next_record;
 use super::elements::{self, ElementName};
-use super::problem::{FileProblem, ImportError, LineProblem};
+use super::problem::{ImportError, LineProblem};
 use super::spheres::{AtomColor, Names, Options, Palette, Spheres};
 use super::words::{number, shown};
 use crate::text::without_mark;
-
-/// A line has 80 columns; some programs add to them.
-const LONGEST: u64 = 1 << 16;
 
 /// The colour of water, and its radius as a part of the element's.
 const WATER: DVec3 = DVec3::new(0.62, 0.78, 0.92);
@@ -36,21 +34,12 @@ const WATERS: [&[u8]; 14] =
 /// What is wrong, with the line.
 pub fn read(mut source: impl BufRead, name: &str, options: Options) -> Result<Spheres, ImportError> {
     let mut reader =
-        Reader { options, found: Spheres::default(), palette: Palette::default(), names: Names::default() };
+        PdbReader { options, found: Spheres::default(), palette: Palette::default(), names: Names::default() };
     let (mut bytes, mut line) = (Vec::new(), 0);
     // The model that atoms belong to now, and whether it has any; it begins with its first atom.
     let (mut model, mut open, mut waters, mut more) = (0, false, 0, None);
-    loop {
-        bytes.clear();
-        let read = source.by_ref().take(LONGEST).read_until(b'\n', &mut bytes);
-        if read.map_err(|source| FileProblem::Read { path: name.to_owned(), source })? == 0 {
-            break;
-        }
-        line += 1;
+    while next_record(&mut source, &mut bytes, &mut line, name)? {
         let refuse = |problem| ImportError::in_line(name, line, problem);
-        if bytes.len() as u64 == LONGEST {
-            return Err(refuse(LineProblem::LongRecord));
-        }
         let text = if line == 1 { without_mark(&bytes).map_err(|error| refuse(error.into()))? } else { &bytes };
         match text.get(..6).unwrap_or(text).trim_ascii_end() {
             b"ATOM" | b"HETATM" => {
@@ -74,7 +63,7 @@ pub fn read(mut source: impl BufRead, name: &str, options: Options) -> Result<Sp
         let problem = LineProblem::Frames { frame: options.frame, found: model };
         return Err(ImportError::in_line(name, line, problem));
     }
-    let Reader { mut found, names, .. } = reader;
+    let PdbReader { mut found, names, .. } = reader;
     found.warnings.extend(names.note());
     if waters > 0 && options.colored {
         let atoms = if waters == 1 { "atom of water is" } else { "atoms of water are" };
@@ -87,14 +76,14 @@ pub fn read(mut source: impl BufRead, name: &str, options: Options) -> Result<Sp
 }
 
 /// Spheres that are being read.
-struct Reader {
+struct PdbReader {
     options: Options,
     found: Spheres,
     palette: Palette,
     names: Names,
 }
 
-impl Reader {
+impl PdbReader {
     /// Reads an atom's line, and returns whether it is water that is told apart.
     fn atom(&mut self, line: &[u8]) -> Result<bool, LineProblem> {
         let Options { scale, radius, colored, .. } = self.options;

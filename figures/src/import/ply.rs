@@ -13,7 +13,7 @@ use std::io::{self, BufRead, Read};
 use glam::DVec3;
 
 use super::mesh::{FaceColor, Faces, Mesh, Vertices};
-use super::problem::{FileProblem, ImportError, LineProblem};
+use super::problem::{Broken, FileProblem, ImportError, LineProblem};
 use super::words::{Words, number, shown};
 
 /// No line of a header, and no number in a text, has so many bytes.
@@ -26,7 +26,7 @@ const MOST_LINES: usize = 1 << 12;
 /// # Errors
 /// What is wrong, with the line, or with the element and its number.
 pub fn read(source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
-    let mut reader = Reader { source, line: 0, encoding: Encoding::Text, word: Vec::new() };
+    let mut reader = PlyReader { source, line: 0, encoding: Encoding::Text, word: Vec::new() };
     let mesh = match reader.header() {
         Ok(elements) => reader.mesh(&elements),
         Err(Broken::Line(problem)) => return Err(ImportError::in_line(name, reader.line, problem)),
@@ -42,18 +42,6 @@ pub fn read(source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
         (Broken::Line(problem), _) => ImportError::from(refuse(format!("{place}: {problem}"))),
     })?;
     mesh.some(name)
-}
-
-/// Why reading ended early.
-enum Broken {
-    Read(io::Error),
-    Line(LineProblem),
-}
-
-impl From<LineProblem> for Broken {
-    fn from(problem: LineProblem) -> Self {
-        Self::Line(problem)
-    }
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -184,7 +172,7 @@ impl Element {
     }
 }
 
-struct Reader<R> {
+struct PlyReader<R> {
     source: R,
     line: usize,
     encoding: Encoding,
@@ -192,7 +180,7 @@ struct Reader<R> {
     word: Vec<u8>,
 }
 
-impl<R: BufRead> Reader<R> {
+impl<R: BufRead> PlyReader<R> {
     fn header(&mut self) -> Result<Vec<Element>, Broken> {
         let mut elements: Vec<Element> = Vec::new();
         let mut bytes = Vec::new();

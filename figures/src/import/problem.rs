@@ -9,6 +9,9 @@ use crate::text::Utf16;
 /// The longest line of a file of spheres, and the longest of a mesh with all lines that continue it.
 pub(super) const LONGEST_LINE: usize = 4 << 20;
 
+/// No line of a PDB file or of an STL file in text has so many bytes.
+pub(super) const LONGEST_RECORD: u64 = 1 << 16;
+
 /// Why a file of spheres or a mesh cannot be used, and in which line if that is known.
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
@@ -55,6 +58,18 @@ pub(super) enum FileProblem {
     Binary { path: String, what: String },
 }
 
+/// Why reading ended early.
+pub(super) enum Broken {
+    Read(io::Error),
+    Line(LineProblem),
+}
+
+impl From<LineProblem> for Broken {
+    fn from(problem: LineProblem) -> Self {
+        Self::Line(problem)
+    }
+}
+
 /// What is wrong with a line.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum LineProblem {
@@ -62,7 +77,7 @@ pub(super) enum LineProblem {
     Number(String),
     #[error("a line is longer than {} MiB", LONGEST_LINE >> 20)]
     Long,
-    #[error("a line is longer than 65535 bytes")]
+    #[error("a line is longer than {} bytes", LONGEST_RECORD - 1)]
     LongRecord,
     #[error(transparent)]
     Utf16(#[from] Utf16),

@@ -8,12 +8,12 @@ use std::io::{self, BufRead, Read};
 
 use glam::DVec3;
 
+use super::blocks::next_record;
 use super::mesh::{FaceColor, Faces, Mesh, Vertices};
 use super::problem::{FileProblem, ImportError, LineProblem};
 use super::words::{Words, number, shown};
 
-/// No line of a text has so many bytes.
-const LONGEST: u64 = 1 << 16;
+/// Bytes of a binary file before its first triangle.
 const HEADER: usize = 84;
 
 /// Reads a mesh from `source`, which errors call `name`.
@@ -58,17 +58,8 @@ fn text(mut source: impl BufRead, name: &str) -> Result<Mesh, ImportError> {
     let (mut mesh, mut faces) = (Mesh::default(), Faces::default());
     let (mut bytes, mut line) = (Vec::new(), 0);
     let mut corners = Vertices::default();
-    loop {
-        bytes.clear();
-        let read = source.by_ref().take(LONGEST).read_until(b'\n', &mut bytes);
-        if read.map_err(|source| FileProblem::Read { path: name.to_owned(), source })? == 0 {
-            break;
-        }
-        line += 1;
+    while next_record(&mut source, &mut bytes, &mut line, name)? {
         let refuse = |problem| ImportError::in_line(name, line, problem);
-        if bytes.len() as u64 == LONGEST {
-            return Err(refuse(LineProblem::LongRecord));
-        }
         let mut words = Words(&bytes);
         let Some(keyword) = words.next() else { continue };
         match keyword.to_ascii_lowercase().as_slice() {

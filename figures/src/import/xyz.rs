@@ -20,9 +20,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rt_geom::Sphere;
 
-use super::blocks::{Broken, LineBlocks, PIECE};
+use super::blocks::{LineBlocks, PIECE};
 use super::elements::{self, ElementName, Found};
-use super::problem::{FileProblem, ImportError, LineProblem};
+use super::problem::{Broken, FileProblem, ImportError, LineProblem};
 use super::spheres::{AtomColor, Names, Options, Palette, Spheres};
 use super::words::{Scanner, Words, number, shown};
 use crate::text::without_mark;

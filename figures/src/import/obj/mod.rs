@@ -18,7 +18,7 @@ use std::path::Path;
 use super::mesh::Mesh;
 use super::problem::{FileProblem, ImportError};
 use quick::{Block, Rest};
-use statement::Reader;
+use statement::ObjReader;
 
 /// Reads a mesh from `source`, which errors call `name`; its material libraries are looked up in `folder`, if there is
 /// one.
@@ -26,7 +26,7 @@ use statement::Reader;
 /// # Errors
 /// What is wrong, with the line.
 pub fn read(mut source: impl Read + Send, name: &str, folder: Option<&Path>) -> Result<Mesh, ImportError> {
-    let mut reader = Reader::new();
+    let mut reader = ObjReader::new();
     let mut line = 1;
     // While what was read of one block is appended, the next is read. Both keep their memory.
     let (mut ready, mut next) = (Block::default(), Block::default());
@@ -160,7 +160,7 @@ mod tests {
 
     /// Reads statement by statement, by the rules above alone.
     fn read_slowly(mut text: &[u8]) -> Result<Mesh, ImportError> {
-        let (mut reader, mut bytes, mut line) = (Reader::new(), Vec::new(), 0);
+        let (mut reader, mut bytes, mut line) = (ObjReader::new(), Vec::new(), 0);
         let failed = |(line, problem)| ImportError::in_line("mesh.obj", line, problem);
         loop {
             let first = line + 1;
@@ -293,9 +293,9 @@ mod tests {
     }
 
     /// Fails after its bytes.
-    struct Broken<'a>(&'a [u8]);
+    struct Torn<'a>(&'a [u8]);
 
-    impl Read for Broken<'_> {
+    impl Read for Torn<'_> {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             if self.0.is_empty() { Err(io::Error::other("torn")) } else { self.0.read(buffer) }
         }
@@ -306,7 +306,7 @@ mod tests {
         for (text, message) in
             [("v 0 0 0\nv 0 0 zero\n", "mesh.obj:2: "), ("v 0 0 0\nv 0 0 zero", "cannot read"), ("", "cannot read")]
         {
-            let error = read(Broken(text.as_bytes()), "mesh.obj", None).unwrap_err().to_string();
+            let error = read(Torn(text.as_bytes()), "mesh.obj", None).unwrap_err().to_string();
             assert!(error.starts_with(message), "{text:?}: {error}");
         }
     }

@@ -1,8 +1,8 @@
 //! Lines of vertices and faces, read in parallel.
 //!
 //! A block of the file is cut into pieces of whole statements, and each piece is read by itself: vertices, and faces
-//! with their corners as they stand. [`Reader::append`] then takes the pieces in order. A statement of another kind, and
-//! one with which something is wrong, is only noted here: `append` hands it to [`Reader::statement`], which has the
+//! with their corners as they stand. [`ObjReader::append`] then takes the pieces in order. A statement of another kind, and
+//! one with which something is wrong, is only noted here: `append` hands it to [`ObjReader::statement`], which has the
 //! last word on every statement.
 
 use std::io::{self, Read};
@@ -15,7 +15,7 @@ use super::super::blocks::{BLOCK, PIECE};
 use super::super::mesh::Vertices;
 use super::super::problem::{LONGEST_LINE, LineProblem};
 use super::super::words::Scanner;
-use super::statement::{PASSED_OVER, Reader, statement};
+use super::statement::{ObjReader, PASSED_OVER, statement};
 
 /// Whole statements of the file, and what was read of them.
 #[derive(Default)]
@@ -272,7 +272,7 @@ fn three_of(scanner: &mut Scanner) -> Option<DVec3> {
     Some(DVec3::new(scanner.number()?, scanner.number()?, scanner.number()?))
 }
 
-impl Reader {
+impl ObjReader {
     /// Appends what was read of a block; `line`, the number of its first line, becomes that of the line with an error or
     /// of the first one behind.
     pub(super) fn append(&mut self, block: &Block, line: &mut usize) -> Result<(), LineProblem> {

@@ -46,7 +46,7 @@ pub(super) fn statement(source: &mut impl BufRead, bytes: &mut Vec<u8>, line: &m
 }
 
 /// A mesh that is being read.
-pub(super) struct Reader {
+pub(super) struct ObjReader {
     mesh: Mesh,
     pub(super) vertices: Vertices,
     /// Bit `k` is set if `PASSED_OVER[k]` occurs.
@@ -65,7 +65,7 @@ pub(super) struct Reader {
     color: FaceColor,
 }
 
-impl Reader {
+impl ObjReader {
     pub(super) fn new() -> Self {
         Self {
             mesh: Mesh::default(),
