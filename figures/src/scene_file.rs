@@ -30,8 +30,8 @@ use crate::texture_file;
 pub use problem::SceneError;
 use problem::{MAX_BYTES, SceneProblem};
 use tables::{
-    AnyNumber, CameraTable, LightTable, MaterialTable, NumberEntry, SceneTable, SpheresTable, TriangleTable, Triple,
-    VectorEntry,
+    AnyNumber, CameraTable, LightTable, MaterialTable, MeshTable, NumberEntry, SceneTable, SpheresTable, TriangleTable,
+    Triple, VectorEntry,
 };
 
 /// Of a longer scene file the elements are parsed in groups of about this many bytes, so that memory is that of the
@@ -129,17 +129,7 @@ impl Checker<'_> {
     fn scene(&self, group: usize) -> Result<Scene, SceneError> {
         let (table, groups) = self.tables(group)?;
         let mut draft = Draft { stage: table.stage.as_ref().is_some_and(|stage| *stage.get_ref()), ..Draft::default() };
-        match (&table.camera, self.changes.view) {
-            (Some(camera), _) if draft.stage => {
-                return Err(self.refuse(camera.span(), SceneProblem::Staged("[camera]")));
-            }
-            (camera, Some(_)) if !draft.stage => {
-                let place = camera.as_ref().map_or(0..0, Spanned::span);
-                return Err(self.refuse(place, SceneProblem::OwnCamera));
-            }
-            _ => {}
-        }
-        draft.scene.camera = or(table.camera.as_ref(), Camera::default(), |camera| self.camera(camera))?;
+        draft.scene.camera = self.camera(table.camera.as_ref(), draft.stage)?;
         let background = table.background.as_ref().map(|color| self.color("background", color)).transpose()?;
         for (name, material) in &table.material {
             let look = self.look(name, material)?;
@@ -157,13 +147,7 @@ impl Checker<'_> {
             draft.scene.vertex_colors.clear();
         }
         for mesh in &table.mesh {
-            let look = match &mesh.material {
-                Some(material) => Ok(self.color_look(&draft, material)?),
-                None => Err(self.bare(&mut draft, mesh.file.span())?),
-            };
-            let path = self.path(&mesh.file)?;
-            let added = load_mesh(&path).and_then(|(found, name)| found.add_to(&mut draft.scene, look, &name));
-            added.map_err(|error| self.refuse(mesh.file.span(), SceneProblem::Import(error)))?;
+            self.mesh(mesh, &mut draft)?;
         }
         if draft.scene.is_empty() {
             return Err(self.refuse(0..0, SceneProblem::Empty));
@@ -174,19 +158,25 @@ impl Checker<'_> {
         if draft.stage {
             draft.scene.set_stage(self.changes.view);
         }
-        if !draft.camera_lights.is_empty() {
-            let spot = draft.scene.spot();
-            for (light, at, span) in draft.camera_lights {
-                let position = spot.at(at);
-                if !position.is_finite() {
-                    let found = position.to_string();
-                    return Err(self.refuse(span, SceneProblem::NotFinite { name: "the light's place", found }));
-                }
-                draft.scene.lights[light].position = position;
-            }
-        }
         draft.scene.background = background.unwrap_or(draft.scene.background);
-        Ok(draft.scene)
+        self.place_lights(draft)
+    }
+
+    /// The scene, with the lights that turn with the camera at their places.
+    fn place_lights(&self, Draft { mut scene, camera_lights, .. }: Draft<'_>) -> Result<Scene, SceneError> {
+        if camera_lights.is_empty() {
+            return Ok(scene);
+        }
+        let spot = scene.spot();
+        for (light, at, span) in camera_lights {
+            let position = spot.at(at);
+            if !position.is_finite() {
+                let found = position.to_string();
+                return Err(self.refuse(span, SceneProblem::NotFinite { name: "the light's place", found }));
+            }
+            scene.lights[light].position = position;
+        }
+        Ok(scene)
     }
 
     /// The tables of the text, or those of a long one without its elements, and where groups of these are.
@@ -242,7 +232,16 @@ impl Checker<'_> {
         table.triangle.iter().try_for_each(|triangle| self.triangle(triangle, draft))
     }
 
-    fn camera(&self, table: &Spanned<CameraTable>) -> Result<Camera, SceneError> {
+    /// The camera of the table, or the default; a scene on the stage may have none.
+    fn camera(&self, table: Option<&Spanned<CameraTable>>, stage: bool) -> Result<Camera, SceneError> {
+        match table {
+            Some(table) if stage => return Err(self.refuse(table.span(), SceneProblem::Staged("[camera]"))),
+            table if !stage && self.changes.view.is_some() => {
+                return Err(self.refuse(table.map_or(0..0, Spanned::span), SceneProblem::OwnCamera));
+            }
+            _ => {}
+        }
+        let Some(table) = table else { return Ok(Camera::default()) };
         let CameraTable { eye, look_at, up, fov, fit } = table.get_ref();
         let point =
             |name, value: &Option<VectorEntry>, default| or(value.as_ref(), default, |value| self.point(name, value));
@@ -317,8 +316,17 @@ impl Checker<'_> {
             radius: radius.as_ref().map(|radius| self.not_negative("radius", radius)).transpose()?,
             colored: look.is_none(),
         };
-        let path = self.path(file)?;
-        let added = load_spheres(&path, options);
+        let added = load_spheres(&self.path(file)?, options);
+        let added = added.and_then(|(found, name)| found.add_to(&mut draft.scene, look, &name));
+        added.map_err(|error| self.refuse(file.span(), SceneProblem::Import(error)))
+    }
+
+    fn mesh(&self, MeshTable { file, material }: &MeshTable, draft: &mut Draft<'_>) -> Result<(), SceneError> {
+        let look = match material {
+            Some(material) => Ok(self.color_look(draft, material)?),
+            None => Err(self.bare(draft, file.span())?),
+        };
+        let added = load_mesh(&self.path(file)?);
         let added = added.and_then(|(found, name)| found.add_to(&mut draft.scene, look, &name));
         added.map_err(|error| self.refuse(file.span(), SceneProblem::Import(error)))
     }

@@ -47,34 +47,7 @@ fn read_lines(
     options: Options,
     line: &mut usize,
 ) -> Result<Spheres, Broken> {
-    *line = 1;
-    let mut header = without_mark(blocks.line()?).map_err(LineProblem::Utf16)?.to_vec();
-    let mut frame = 1;
-    let (expected, comment) = loop {
-        while header.trim_ascii().is_empty() && !blocks.is_empty()? {
-            *line += 1;
-            header = blocks.line()?.to_vec();
-        }
-        if frame > 1 && header.trim_ascii().is_empty() {
-            return Err(LineProblem::Frames { frame: options.frame, found: frame - 1 }.into());
-        }
-        let expected = text(&header).parse::<u64>().map_err(|_| LineProblem::Count(shown(&header)))?;
-        *line += 1;
-        let comment = String::from_utf8_lossy(blocks.line()?).into_owned();
-        if frame == options.frame {
-            break (expected, comment);
-        }
-        for found in 0..expected {
-            if blocks.is_empty()? {
-                return Err(LineProblem::Short { expected, found }.into());
-            }
-            *line += 1;
-            blocks.line()?;
-        }
-        frame += 1;
-        *line += 1;
-        header = blocks.line()?.to_vec();
-    };
+    let (expected, comment) = head(blocks, options.frame, line)?;
     let layout = Columns::of(&comment, options)?;
 
     let mut found = Spheres::default();
@@ -107,6 +80,39 @@ fn read_lines(
     found.warnings.extend(names.note());
     what_follows(blocks, *line, options.frame, &mut found)?;
     Ok(found)
+}
+
+/// Reads up to the first atom of the frame asked for; returns how many atoms it has, and its comment, which is the
+/// line `line`, as is one with an error.
+fn head(blocks: &mut LineBlocks<impl Read>, asked: u64, line: &mut usize) -> Result<(u64, String), Broken> {
+    *line = 1;
+    let mut header = without_mark(blocks.line()?).map_err(LineProblem::Utf16)?.to_vec();
+    let mut frame = 1;
+    loop {
+        while header.trim_ascii().is_empty() && !blocks.is_empty()? {
+            *line += 1;
+            header = blocks.line()?.to_vec();
+        }
+        if frame > 1 && header.trim_ascii().is_empty() {
+            return Err(LineProblem::Frames { frame: asked, found: frame - 1 }.into());
+        }
+        let expected = text(&header).parse::<u64>().map_err(|_| LineProblem::Count(shown(&header)))?;
+        *line += 1;
+        let comment = String::from_utf8_lossy(blocks.line()?).into_owned();
+        if frame == asked {
+            return Ok((expected, comment));
+        }
+        for found in 0..expected {
+            if blocks.is_empty()? {
+                return Err(LineProblem::Short { expected, found }.into());
+            }
+            *line += 1;
+            blocks.line()?;
+        }
+        frame += 1;
+        *line += 1;
+        header = blocks.line()?.to_vec();
+    }
 }
 
 /// What was appended so far.
@@ -662,18 +668,15 @@ mod tests {
         Ok(found)
     }
 
-    /// A line with a name and a position, or a position, a radius and perhaps a colour.
+    /// The columns of a line: a name and a position, or a position, a radius and perhaps a colour.
+    fn columns(named: bool, colored: bool) -> usize {
+        if colored && !named { 7 } else { 4 }
+    }
+
+    /// Reads such a line.
     fn ball_slowly(line: &str, named: bool, colored: bool) -> Result<[f64; 4], String> {
         let words: Vec<&str> = line.split(|c: char| c.is_ascii_whitespace()).filter(|word| !word.is_empty()).collect();
-        let first = usize::from(named);
-        let expected = first
-            + if named {
-                3
-            } else if colored {
-                7
-            } else {
-                4
-            };
+        let (first, expected) = (usize::from(named), columns(named, colored));
         if words.len() < expected {
             return Err(format!("expected {expected} columns, found {}", words.len()));
         }
@@ -730,13 +733,7 @@ mod tests {
                 if plain {
                     words.push(random.pick(&["C", "C", "OW", "Cl"]).to_owned());
                 }
-                for at in 0..if plain {
-                    3
-                } else if colored {
-                    7
-                } else {
-                    4
-                } {
+                for at in 0..columns(plain, colored) - usize::from(plain) {
                     let limit = if at < 3 { -20.0 } else { 0.0 };
                     words.push(match (at, random.below(5)) {
                         (4.., _) => format!("{:.3}", random.share()),
@@ -746,24 +743,11 @@ mod tests {
                     });
                 }
                 if random.one_in(hostile) {
-                    const PARTS: [&str; 14] = [
-                        "",
-                        "-1",
-                        "+.5",
-                        "-0",
-                        "1e999",
-                        "nan",
-                        "-inf",
-                        "0x10",
-                        "1,5",
-                        "1e",
-                        "--1",
-                        "1.5.5",
-                        "\u{b2}",
-                        "999999999999999999999",
-                    ];
+                    // And an empty one.
+                    let parts = " -1 +.5 -0 1e999 nan -inf 0x10 1,5 1e --1 1.5.5 \u{b2} 999999999999999999999";
+                    let parts: Vec<&str> = parts.split(' ').collect();
                     let at = usize::from(plain) + random.below(words.len() - usize::from(plain));
-                    words[at] = random.pick(&PARTS).to_owned();
+                    words[at] = random.pick(&parts).to_owned();
                 }
                 text += &(words.join(blank) + random.pick(&["\n", "\n", "\r\n", " \n", " and more\n"]));
             }
