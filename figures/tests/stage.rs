@@ -100,10 +100,11 @@ fn a_light_turns_with_the_camera() {
 fn a_background_of_none_is_transparent() {
     let folder = folder();
     fs::write(folder.path().join("axes.toml"), AXES).unwrap();
-    let draw = |background: &str, more: &[&str]| {
-        let first = ["render", "axes.toml", "--size", "31x23", "--samples", "3", "--background", background, "-o", "-"];
+    let draw_to = |out: &str, background: &str, more: &[&str]| {
+        let first = ["render", "axes.toml", "--size", "31x23", "--samples", "3", "--background", background, "-o", out];
         stdout(folder.path(), &[&first[..], more].concat())
     };
+    let draw = |background: &str, more: &[&str]| draw_to("-", background, more);
     let read = |bytes: Vec<u8>| {
         rt_io::png::read_rgba(std::io::Cursor::new(bytes), &rt_io::Limits::default()).unwrap().0.samples
     };
@@ -148,24 +149,7 @@ fn a_background_of_none_is_transparent() {
     assert_eq!(draw("#ffffff", &[]), draw("1,1,1", &[]));
     // Bands carry it, and so does what they are joined to.
     for band in ["1/3", "2/3", "3/3"] {
-        let name = format!("band-{}.png", &band[..1]);
-        stdout(
-            folder.path(),
-            &[
-                "render",
-                "axes.toml",
-                "--size",
-                "31x23",
-                "--samples",
-                "3",
-                "--background",
-                "none",
-                "--tile",
-                band,
-                "-o",
-                &name,
-            ],
-        );
+        draw_to(&format!("band-{}.png", &band[..1]), "none", &["--tile", band]);
     }
     let bands = ["band-3.png", "band-1.png", "band-2.png"];
     let joined = stdout(folder.path(), &[&["merge", "-"], &bands[..]].concat());
