@@ -23,6 +23,58 @@ use truncated::Estimate;
 use crate::exact::{mantissa_and_exponent, power_of_two, scale};
 use crate::fma_dispatch;
 
+/// Defines a function of the nine entries of a matrix, column by column, whose body is compiled with and without FMA.
+///
+/// The entries cross the call by value: loads from memory that was just written would stall.
+macro_rules! dispatched {
+    (fn $name:ident<$fma:ident>($m:ident) -> $result:ty $body:block) => {
+        #[inline(always)]
+        fn $name($m: &[f64; 9]) -> $result {
+            #[expect(clippy::too_many_arguments, reason = "by value")]
+            #[inline(always)]
+            fn kernel<const $fma: bool>(
+                a: f64,
+                b: f64,
+                c: f64,
+                d: f64,
+                e: f64,
+                f: f64,
+                g: f64,
+                h: f64,
+                i: f64,
+            ) -> $result {
+                let $m = &[a, b, c, d, e, f, g, h, i];
+                $body
+            }
+            fma_dispatch! {
+                #[expect(clippy::too_many_arguments, reason = "by value")]
+                fn by_value(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> $result = kernel;
+            }
+            let [a, b, c, d, e, f, g, h, i] = *$m;
+            by_value(a, b, c, d, e, f, g, h, i)
+        }
+    };
+}
+
+/// The same for a cold function, which is compiled once.
+macro_rules! cold {
+    ($(#[$doc:meta])* fn $name:ident($m:ident) -> $result:ty $body:block) => {
+        $(#[$doc])*
+        #[inline(always)]
+        fn $name($m: &[f64; 9]) -> $result {
+            #[cold]
+            #[inline(never)]
+            #[expect(clippy::too_many_arguments, reason = "by value")]
+            fn by_value(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> $result {
+                let $m = &[a, b, c, d, e, f, g, h, i];
+                $body
+            }
+            let [a, b, c, d, e, f, g, h, i] = *$m;
+            by_value(a, b, c, d, e, f, g, h, i)
+        }
+    };
+}
+
 /// A pseudo-inverse and the rank it was made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PseudoInverse {
@@ -57,75 +109,41 @@ pub struct PseudoInverse {
 #[must_use]
 #[inline]
 pub fn pseudo_inverse(m: DMat3) -> PseudoInverse {
-    let [a, b, c, d, e, f, g, h, i] = m.to_cols_array();
-    staged(a, b, c, d, e, f, g, h, i)
+    staged(&m.to_cols_array())
 }
 
-fma_dispatch! {
-    #[expect(clippy::too_many_arguments, reason = "nine numbers in registers; from memory just written they come late")]
-    fn staged(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> PseudoInverse = staged_kernel;
-}
-
-#[expect(clippy::too_many_arguments, reason = "as above")]
-#[inline(always)]
-fn staged_kernel<const FMA: bool>(
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
-    g: f64,
-    h: f64,
-    i: f64,
-) -> PseudoInverse {
-    let m = [a, b, c, d, e, f, g, h, i];
-    match regular::inverse::<FMA, false>(&m) {
-        Some(matrix) => PseudoInverse { matrix, rank: 3 },
-        None => undecided(a, b, c, d, e, f, g, h, i),
+dispatched! {
+    fn staged<FMA>(m) -> PseudoInverse {
+        match regular::inverse::<FMA, false>(m) {
+            Some(matrix) => PseudoInverse { matrix, rank: 3 },
+            None => undecided(m),
+        }
     }
 }
 
-/// All that double-double does not decide.
-#[cold]
-#[inline(never)]
-#[expect(clippy::too_many_arguments, reason = "as above")]
-fn undecided(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> PseudoInverse {
-    let entries = [a, b, c, d, e, f, g, h, i];
-    let m = &DMat3::from_cols_array(&entries);
-    let decided = if whole::is_likely(&entries) {
-        whole::pseudo_inverse(m)
-    } else {
-        cancelling(a, b, c, d, e, f, g, h, i).map(|matrix| PseudoInverse { matrix, rank: 3 })
-    };
-    if let Some(answer) = decided {
-        return answer;
+cold! {
+    /// All that double-double does not decide.
+    fn undecided(entries) -> PseudoInverse {
+        let m = &DMat3::from_cols_array(entries);
+        let decided = if whole::is_likely(entries) {
+            whole::pseudo_inverse(m)
+        } else {
+            cancelling(entries).map(|matrix| PseudoInverse { matrix, rank: 3 })
+        };
+        if let Some(answer) = decided {
+            return answer;
+        }
+        if !m.is_finite() {
+            return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
+        }
+        rescaled(m, pseudo_inverse).or_else(|| fixed::pseudo_inverse(m)).unwrap_or_else(|| integers::pseudo_inverse(m))
     }
-    if !m.is_finite() {
-        return PseudoInverse { matrix: DMat3::NAN, rank: 0 };
-    }
-    rescaled(m, pseudo_inverse).or_else(|| fixed::pseudo_inverse(m)).unwrap_or_else(|| integers::pseudo_inverse(m))
 }
 
-fma_dispatch! {
-    #[expect(clippy::too_many_arguments, reason = "as above")]
-    fn cancelling(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> Option<DMat3> = cancelling_kernel;
-}
-
-#[expect(clippy::too_many_arguments, reason = "as above")]
-#[inline(always)]
-fn cancelling_kernel<const FMA: bool>(
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
-    g: f64,
-    h: f64,
-    i: f64,
-) -> Option<DMat3> {
-    regular::inverse::<FMA, true>(&[a, b, c, d, e, f, g, h, i])
+dispatched! {
+    fn cancelling<FMA>(m) -> Option<DMat3> {
+        regular::inverse::<FMA, true>(m)
+    }
 }
 
 /// Returns the row sums of the pseudo-inverse of `m`: the least-squares solution of smallest length of
@@ -145,62 +163,37 @@ fn cancelling_kernel<const FMA: bool>(
 #[must_use]
 #[inline]
 pub fn pseudo_inverse_row_sums(m: DMat3) -> DVec3 {
-    let [a, b, c, d, e, f, g, h, i] = m.to_cols_array();
-    sums_staged(a, b, c, d, e, f, g, h, i)
+    staged_sums(&m.to_cols_array())
 }
 
-fma_dispatch! {
-    #[expect(clippy::too_many_arguments, reason = "nine numbers in registers; from memory just written they come late")]
-    fn sums_staged(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 = sums_kernel;
-}
-
-#[expect(clippy::too_many_arguments, reason = "as above")]
-#[inline(always)]
-fn sums_kernel<const FMA: bool>(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 {
-    let m = [a, b, c, d, e, f, g, h, i];
-    match regular::row_sums::<FMA, false>(&m) {
-        Some(sums) => sums,
-        None => undecided_sums(a, b, c, d, e, f, g, h, i),
+dispatched! {
+    fn staged_sums<FMA>(m) -> DVec3 {
+        match regular::row_sums::<FMA, false>(m) {
+            Some(sums) => sums,
+            None => undecided_sums(m),
+        }
     }
 }
 
-/// The same for the row sums.
-#[cold]
-#[inline(never)]
-#[expect(clippy::too_many_arguments, reason = "as above")]
-fn undecided_sums(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> DVec3 {
-    let entries = [a, b, c, d, e, f, g, h, i];
-    let m = &DMat3::from_cols_array(&entries);
-    let decided =
-        if whole::is_likely(&entries) { whole::row_sums(m) } else { cancelling_sums(a, b, c, d, e, f, g, h, i) };
-    if let Some(sums) = decided {
-        return sums;
+cold! {
+    /// The same for the row sums.
+    fn undecided_sums(entries) -> DVec3 {
+        let m = &DMat3::from_cols_array(entries);
+        let decided = if whole::is_likely(entries) { whole::row_sums(m) } else { cancelling_sums(entries) };
+        if let Some(sums) = decided {
+            return sums;
+        }
+        if !m.is_finite() {
+            return DVec3::NAN;
+        }
+        fixed::row_sums(m).unwrap_or_else(|| integers::row_sums(m))
     }
-    if !m.is_finite() {
-        return DVec3::NAN;
-    }
-    fixed::row_sums(m).unwrap_or_else(|| integers::row_sums(m))
 }
 
-fma_dispatch! {
-    #[expect(clippy::too_many_arguments, reason = "as above")]
-    fn cancelling_sums(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> Option<DVec3> = cancelling_sums_kernel;
-}
-
-#[expect(clippy::too_many_arguments, reason = "as above")]
-#[inline(always)]
-fn cancelling_sums_kernel<const FMA: bool>(
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
-    g: f64,
-    h: f64,
-    i: f64,
-) -> Option<DVec3> {
-    regular::row_sums::<FMA, true>(&[a, b, c, d, e, f, g, h, i])
+dispatched! {
+    fn cancelling_sums<FMA>(m) -> Option<DVec3> {
+        regular::row_sums::<FMA, true>(m)
+    }
 }
 
 /// Returns the pseudo-inverse of `m` with every singular value up to `rtol` times the largest taken as zero.
@@ -243,9 +236,8 @@ pub fn pseudo_inverse_with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
 #[inline(always)]
 fn with_tolerance(m: DMat3, rtol: f64) -> PseudoInverse {
     let entries = m.to_cols_array();
-    let [a, b, c, d, e, f, g, h, i] = entries;
     // Double-double rarely decides small whole numbers that another stage does not decide sooner.
-    let exact = if whole::is_likely(&entries) { None } else { regular_inverse(a, b, c, d, e, f, g, h, i) };
+    let exact = if whole::is_likely(&entries) { None } else { regular_inverse(&entries) };
     if let Some(matrix) = exact {
         let exact = PseudoInverse { matrix, rank: 3 };
         if truncated::keeps_all(&m, rtol, &exact) {
@@ -264,10 +256,9 @@ fn nearly_singular(m: &DMat3, rtol: f64, regular: Option<DMat3>) -> PseudoInvers
     if let Estimate::Dropped(answer) = estimate {
         return answer;
     }
-    let [a, b, c, d, e, f, g, h, i] = entries;
     let exact = match regular {
         Some(matrix) => PseudoInverse { matrix, rank: 3 },
-        None => undecided(a, b, c, d, e, f, g, h, i),
+        None => undecided(&entries),
     };
     if matches!(estimate, Estimate::Kept) || truncated::keeps_all(m, rtol, &exact) {
         return exact;
@@ -275,26 +266,10 @@ fn nearly_singular(m: &DMat3, rtol: f64, regular: Option<DMat3>) -> PseudoInvers
     truncated::truncated(m, rtol, exact, pseudo_inverse)
 }
 
-fma_dispatch! {
-    #[expect(clippy::too_many_arguments, reason = "as above")]
-    fn regular_inverse(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64, i: f64) -> Option<DMat3>
-        = regular_inverse_kernel;
-}
-
-#[expect(clippy::too_many_arguments, reason = "as above")]
-#[inline(always)]
-fn regular_inverse_kernel<const FMA: bool>(
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
-    f: f64,
-    g: f64,
-    h: f64,
-    i: f64,
-) -> Option<DMat3> {
-    regular::inverse::<FMA, false>(&[a, b, c, d, e, f, g, h, i])
+dispatched! {
+    fn regular_inverse<FMA>(m) -> Option<DMat3> {
+        regular::inverse::<FMA, false>(m)
+    }
 }
 
 /// What `invert` makes of a finite matrix with entries far from 1, by one that is a power of two times it and about 1.
