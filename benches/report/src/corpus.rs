@@ -94,49 +94,38 @@ fn with<const M: usize>(mut classes: Vec<Class<M>>, last: Class<M>) -> Vec<Class
 /// Values that lie exactly halfway between two doubles, or beside that by less than `2^-100` of themselves.
 const TIES: &str = "halfway between two doubles";
 
+fn ties<const M: usize>(rows: usize, make: fn(&mut Random) -> [f64; M]) -> Class<M> {
+    cases::class(TIES, rows, |_| true, make)
+}
+
 /// Roots below the normal numbers: halves of the least.
 fn root_ties(rows: usize) -> Class<3> {
-    cases::class(
-        TIES,
-        rows,
-        |_| true,
-        |r| {
-            let odd = (2.0 * r.whole(-999, 999) + 1.0) * f64::from_bits(1);
-            if r.one_in(2) { [0.0, 2.0, odd] } else { [2.0, odd, 0.0] }
-        },
-    )
+    ties(rows, |r| {
+        let odd = (2.0 * r.whole(-999, 999) + 1.0) * f64::from_bits(1);
+        if r.one_in(2) { [0.0, 2.0, odd] } else { [2.0, odd, 0.0] }
+    })
 }
 
 /// `t` is the difference of two doubles: the height of the origin and the radius. A ray aside by a hair hits a hair
 /// later.
 fn sphere_ties(rows: usize) -> Class<10> {
-    cases::class(
-        TIES,
-        rows,
-        |_| true,
-        |r| {
-            let (height, radius) = (r.within(4.0, 8.0), r.within(1.0, 2.0));
-            let aside = if r.one_in(2) { 0.0 } else { size(r.within(-40.0, -20.0)) };
-            join(&[&[aside, 0.0, height], &[0.0, 0.0, -1.0], &[0.0; 3], &[radius]])
-        },
-    )
+    ties(rows, |r| {
+        let (height, radius) = (r.within(4.0, 8.0), r.within(1.0, 2.0));
+        let aside = if r.one_in(2) { 0.0 } else { size(r.within(-40.0, -20.0)) };
+        join(&[&[aside, 0.0, height], &[0.0, 0.0, -1.0], &[0.0; 3], &[radius]])
+    })
 }
 
 /// `t` is the sum of two doubles: the heights of the origin and of the plane, which is tilted by an ulp in some cases,
 /// at a point with a weight of a hair.
 fn triangle_ties(rows: usize) -> Class<15> {
-    cases::class(
-        TIES,
-        rows,
-        |_| true,
-        |r| {
-            let (height, depth) = (r.within(4.0, 8.0), r.within(1.0, 2.0));
-            let depths = if r.one_in(2) { [depth; 3] } else { [depth, depth, depth.next_up()] };
-            let inward = size(r.within(-60.0, -16.0));
-            let [a, b, c] = [[-4.0, 0.0, -depths[0]], [4.0, 0.0, -depths[1]], [0.0, 8.0, -depths[2]]];
-            join(&[&[0.25, inward, height], &[0.0, 0.0, -1.0], &a, &b, &c])
-        },
-    )
+    ties(rows, |r| {
+        let (height, depth) = (r.within(4.0, 8.0), r.within(1.0, 2.0));
+        let depths = if r.one_in(2) { [depth; 3] } else { [depth, depth, depth.next_up()] };
+        let inward = size(r.within(-60.0, -16.0));
+        let [a, b, c] = [[-4.0, 0.0, -depths[0]], [4.0, 0.0, -depths[1]], [0.0, 8.0, -depths[2]]];
+        join(&[&[0.25, inward, height], &[0.0, 0.0, -1.0], &a, &b, &c])
+    })
 }
 
 /// Pairs of vectors whose inner product is easy, zero, nearly zero, or made of numbers of any size.

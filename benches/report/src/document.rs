@@ -166,51 +166,44 @@ fn which(report: &Report) -> Block {
         "take, if all is ordinary",
         "what that gets wrong in hard ones",
     ];
-    let mut rows = vec![row(head)];
-    for kernel in &report.kernels {
+    let choices = report.kernels.iter().filter_map(Choice::new);
+    Block::Table([row(head)].into_iter().chain(choices.map(|choice| choice.row())).collect())
+}
+
+/// The methods of a kernel to choose from.
+struct Choice<'a> {
+    kernel: &'a Kernel,
+    /// What times are compared with.
+    textbook: Option<&'a Measured>,
+    /// Whatever comes.
+    safe: &'a Measured,
+    /// If all is ordinary.
+    quick: &'a Measured,
+}
+
+const NO_ORDER: &str = "no count and no distance is NaN";
+
+impl<'a> Choice<'a> {
+    /// `None` if no method gives all that the kernel has.
+    fn new(kernel: &'a Kernel) -> Option<Self> {
         let full: Vec<&Measured> =
             kernel.methods.iter().filter(|method| method.has_values || kernel.values.is_none()).collect();
         let textbook = kernel.methods.iter().find(|method| !method.ours && !method.name.ends_with("f32"));
-        let wrong = |errors: &Errors| if kernel.one_sided { errors.lost } else { errors.wrong_verdicts };
-        let no_order = "no count and no distance is NaN";
-        // What noise may have made slower counts as equally fast; then errors decide.
-        let fastest = |candidates: &[&Measured], errors: &dyn Fn(&Measured) -> Errors| -> Option<usize> {
-            let time = |&i: &usize| candidates[i].time().median;
-            let least = (0..candidates.len()).map(|i| time(&i)).fold(f64::INFINITY, f64::min);
-            let fast = (0..candidates.len()).filter(|i| time(i) <= (1.0 + NOISY) * least);
-            let cost = |i: &usize| {
-                let errors = errors(candidates[*i]);
-                (errors.wrong_verdicts, errors.max_ulp, time(i))
-            };
-            fast.min_by(|a, b| cost(a).partial_cmp(&cost(b)).expect(no_order))
-        };
         let worst = |method: &Measured| {
             let total = method.total();
-            (wrong(&total), total.max_ulp)
+            (wrong(kernel, &total), total.max_ulp)
         };
-        let best = full.iter().map(|method| worst(method)).min_by(|a, b| a.partial_cmp(b).expect(no_order));
+        let best = full.iter().map(|method| worst(method)).min_by(|a, b| a.partial_cmp(b).expect(NO_ORDER));
         let safest: Vec<&Measured> = full.iter().copied().filter(|method| Some(worst(method)) == best).collect();
-        let easy = |errors: &Errors| wrong(errors) == 0 && errors.max_ulp <= 1e4;
+        let easy = |errors: &Errors| wrong(kernel, errors) == 0 && errors.max_ulp <= 1e4;
         let ordinary: Vec<&Measured> = full.iter().copied().filter(|method| easy(&method.classes[0].errors)).collect();
-        let Some(safe) = fastest(&safest, &Measured::total).map(|i| safest[i]) else { continue };
-        let quick = fastest(&ordinary, &|method| method.classes[0].errors.clone()).map_or(safe, |i| ordinary[i]);
+        let safe = fastest(&safest, Measured::total)?;
+        let quick = fastest(&ordinary, |method| method.classes[0].errors.clone()).unwrap_or(safe);
+        Some(Self { kernel, textbook, safe, quick })
+    }
 
-        let compared = |method: &Measured, class: usize| {
-            let time = method.classes[class].time.median;
-            let than = textbook.map_or(String::new(), |other| match other.name == method.name {
-                true => " (the textbook's)".to_owned(),
-                false => format!(" ({})", against(time, other.classes[class].time.median)),
-            });
-            format!("{time:.1} ns{than}")
-        };
-        let ratio = |class: usize| {
-            safe.classes[class].time.median / textbook.map_or(1.0, |other| other.classes[class].time.median)
-        };
-        let dearest = |of: &dyn Fn(&str) -> bool| {
-            let classes = (0..safe.classes.len()).filter(|&class| of(&safe.classes[class].class));
-            let dearest = classes.max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
-            dearest.map_or(String::new(), |class| format!("{}: {}", safe.classes[class].class, compared(safe, class)))
-        };
+    fn row(&self) -> Vec<String> {
+        let Self { kernel, safe, quick, .. } = self;
         let off = |max_ulp: f64| match max_ulp {
             d if d >= NAN_DISTANCE => "NaN".to_owned(),
             d => format!("up to {} ulp", ulp(d)),
@@ -219,26 +212,60 @@ fn which(report: &Report) -> Block {
         let within = if total.max_ulp > 0.0 { format!(", {}", off(total.max_ulp)) } else { String::new() };
         let errors = quick.total();
         let mut gets_wrong = Vec::new();
-        if wrong(&errors) > 0 {
-            gets_wrong.push(format!("{} of verdicts", percent(wrong(&errors) as f64 / errors.cases as f64)));
+        if wrong(kernel, &errors) > 0 {
+            gets_wrong.push(format!("{} of verdicts", percent(wrong(kernel, &errors) as f64 / errors.cases as f64)));
         }
         if errors.max_ulp > 0.0 {
             gets_wrong.push(off(errors.max_ulp));
         }
-        rows.push(vec![
+        let same = quick.name == safe.name;
+        vec![
             kernel.name.clone(),
-            format!("{}, {}{within}", safe.name, compared(safe, 0)),
-            dearest(&|class| !EXTREME.contains(&class)),
-            dearest(&|_| true),
-            if quick.name == safe.name {
-                "the same".to_owned()
-            } else {
-                format!("{}, {}", quick.name, compared(quick, 0))
-            },
+            format!("{}, {}{within}", safe.name, self.compared(safe, 0)),
+            self.dearest(|class| !EXTREME.contains(&class)),
+            self.dearest(|_| true),
+            if same { "the same".to_owned() } else { format!("{}, {}", quick.name, self.compared(quick, 0)) },
             if gets_wrong.is_empty() { "nothing".to_owned() } else { gets_wrong.join(", ") },
-        ]);
+        ]
     }
-    Block::Table(rows)
+
+    /// The time of a method on a class, against the textbook's.
+    fn compared(&self, method: &Measured, class: usize) -> String {
+        let time = method.classes[class].time.median;
+        let than = self.textbook.map_or(String::new(), |other| match other.name == method.name {
+            true => " (the textbook's)".to_owned(),
+            false => format!(" ({})", against(time, other.classes[class].time.median)),
+        });
+        format!("{time:.1} ns{than}")
+    }
+
+    /// The class, of some, on which the safe method is slowest against the textbook.
+    fn dearest(&self, of: impl Fn(&str) -> bool) -> String {
+        let classes = &self.safe.classes;
+        let ratio = |class: usize| {
+            classes[class].time.median / self.textbook.map_or(1.0, |other| other.classes[class].time.median)
+        };
+        let some = (0..classes.len()).filter(|&class| of(&classes[class].class));
+        let dearest = some.max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
+        dearest.map_or(String::new(), |class| format!("{}: {}", classes[class].class, self.compared(self.safe, class)))
+    }
+}
+
+/// Verdicts that count as wrong.
+fn wrong(kernel: &Kernel, errors: &Errors) -> usize {
+    if kernel.one_sided { errors.lost } else { errors.wrong_verdicts }
+}
+
+/// The fastest of some methods. What noise may have made slower counts as equally fast; then errors decide.
+fn fastest<'a>(candidates: &[&'a Measured], errors: impl Fn(&Measured) -> Errors) -> Option<&'a Measured> {
+    let time = |method: &Measured| method.time().median;
+    let least = candidates.iter().map(|method| time(method)).fold(f64::INFINITY, f64::min);
+    let fast = candidates.iter().copied().filter(|method| time(method) <= (1.0 + NOISY) * least);
+    let cost = |method: &Measured| {
+        let errors = errors(method);
+        (errors.wrong_verdicts, errors.max_ulp, time(method))
+    };
+    fast.min_by(|a, b| cost(a).partial_cmp(&cost(b)).expect(NO_ORDER))
 }
 
 /// Returns the table of all methods on all scenes.

@@ -11,7 +11,9 @@ use std::fmt::Write;
 
 use super::labels::Labels;
 use super::measure::{Errors, Kernel, Measured, NAN_DISTANCE};
-use super::svg::{LEFT, RIGHT, caption, key, key_height, percent, power_of_ten, shape, style, upward};
+use super::svg::{
+    LEFT, RIGHT, axes, below, caption, key, key_height, level, percent, power_of_ten, shape, style, upright, upward,
+};
 
 const TOP: f64 = 36.0;
 const BOTTOM: f64 = 286.0;
@@ -107,35 +109,28 @@ fn across(error: f64, (first, last): (i32, i32)) -> f64 {
 
 fn frame(svg: &mut String, kernel: &Kernel, decades: (i32, i32), label: &str, (low, high): (f64, f64)) {
     svg.push_str(&style(&kernel.name, KEY + key_height(kernel.methods.len())));
-    // Writing to a string cannot fail.
     let under = BOTTOM + 17.0;
     let (first, last) = decades;
     for decade in (first..=last).step_by(if last > 9 { 3 } else { 1 }) {
         let x = across(10f64.powi(decade), decades);
-        let text = power_of_ten(decade);
-        let _ = writeln!(svg, r#"<line class="grid" x1="{x:.1}" y1="{TOP}" x2="{x:.1}" y2="{BOTTOM}"/>"#);
-        let _ = writeln!(svg, r#"<text class="small" x="{x:.1}" y="{under}" text-anchor="middle">{text}</text>"#);
+        upright(svg, x, TOP, BOTTOM);
+        below(svg, x, under, power_of_ten(decade));
     }
     for (text, x) in [("0", across(0.0, decades)), ("NaN", across(NAN_DISTANCE, decades))] {
         if text == "0" || last > 9 {
-            let _ = writeln!(svg, r#"<text class="small" x="{x:.1}" y="{under}" text-anchor="middle">{text}</text>"#);
+            below(svg, x, under, text);
         }
     }
     // Two or three lines within a decade would not show that the axis is logarithmic.
     let digits: &[f64] = if high - low < 1.0 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0] } else { &[1.0, 2.0, 5.0] };
-    let mut ticks: Vec<f64> = Vec::new();
-    for decade in -1..8 {
-        ticks.extend(digits.iter().map(|digit| digit * 10f64.powi(decade)));
-    }
-    for tick in ticks.into_iter().filter(|tick| (low..high).contains(&tick.log10())) {
-        let y = TOP + (BOTTOM - TOP) * (high - tick.log10()) / (high - low);
-        let (end, baseline) = (LEFT - 5.0, y + 4.0);
-        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{RIGHT}" y2="{y:.1}"/>"#);
-        let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{baseline:.1}" text-anchor="end">{tick}</text>"#);
+    let ticks = (-1..8).flat_map(|decade| digits.iter().map(move |digit| digit * 10f64.powi(decade)));
+    for tick in ticks.filter(|tick| (low..high).contains(&tick.log10())) {
+        level(svg, TOP + (BOTTOM - TOP) * (high - tick.log10()) / (high - low), tick);
     }
     let zero = LEFT + COLUMN;
+    // Writing to a string cannot fail.
     let _ = writeln!(svg, r#"<line class="axis" x1="{zero}" y1="{TOP}" x2="{zero}" y2="{BOTTOM}"/>"#);
-    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {TOP} V {BOTTOM} H {RIGHT}"/>"#);
+    axes(svg, TOP, BOTTOM);
     caption(svg, BOTTOM + 36.0, label);
     caption(svg, BOTTOM + 52.0, "mark: in ordinary cases; line: up to all classes");
     caption(svg, BOTTOM + 68.0, "blue: this project; filled: beaten by none");

@@ -3,7 +3,7 @@
 //! They are as wide as a narrow screen, so that their text is read there as it is written. Colours stand in a style
 //! block, once plainly and once for dark screens, which viewers without media queries pass over.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 /// Width of a diagram, and where its axes begin and end.
 pub(super) const WIDTH: f64 = 400.0;
@@ -82,6 +82,28 @@ pub(super) fn key(svg: &mut String, top: f64, names: &[(String, String, bool)]) 
 /// The height of a key.
 pub(super) fn key_height(names: usize) -> f64 {
     LINE * names as f64
+}
+
+/// Adds a line of the grid at the height `y`, and its label to the left.
+pub(super) fn level(svg: &mut String, y: f64, label: impl Display) {
+    let end = LEFT - 5.0;
+    let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{y:.1}" x2="{RIGHT}" y2="{y:.1}"/>"#);
+    let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{:.1}" text-anchor="end">{label}</text>"#, y + 4.0);
+}
+
+/// Adds a line of the grid at `x`, from `top` to `bottom`.
+pub(super) fn upright(svg: &mut String, x: f64, top: f64, bottom: f64) {
+    let _ = writeln!(svg, r#"<line class="grid" x1="{x:.1}" y1="{top}" x2="{x:.1}" y2="{bottom}"/>"#);
+}
+
+/// Adds a label below the axis.
+pub(super) fn below(svg: &mut String, x: f64, y: f64, label: impl Display) {
+    let _ = writeln!(svg, r#"<text class="small" x="{x:.1}" y="{y}" text-anchor="middle">{label}</text>"#);
+}
+
+/// Adds both axes.
+pub(super) fn axes(svg: &mut String, top: f64, bottom: f64) {
+    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {top} V {bottom} H {RIGHT}"/>"#);
 }
 
 /// Adds a line of text in the middle between the axes' ends.

@@ -18,7 +18,9 @@ use super::labels::Labels;
 use super::measure::{Effort, Time};
 use super::progress::progress;
 use super::random::Random;
-use super::svg::{LEFT, RIGHT, caption, key, key_height, power_of_ten, shape, style, upward};
+use super::svg::{
+    LEFT, RIGHT, axes, below, caption, key, key_height, level, power_of_ten, shape, style, upright, upward,
+};
 
 /// What was measured of one method on one number of spheres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -134,47 +136,29 @@ fn contestants<'a>(cloud: &'a Cloud, Trees { listed, sorted, fast }: &'a Trees) 
         let visits = rays.iter().map(|ray| tree.closest_counted(ray, AHEAD).1);
         Some(visits.map(|visits| visits.nodes + visits.tests).sum::<usize>() as f64 / rays.len() as f64)
     };
+    let contestant = |name, ours, rays, build, tests, trace| Contestant { name, ours, rays, build, tests, trace };
+    let looped = Some(cloud.spheres.len() as f64);
+    let batch: Trace = Box::new(|rays, hits| fast.0.closest_batch(rays, AHEAD, hits));
     [
-        Contestant {
-            name: "plain loop",
-            ours: false,
-            rays: few,
-            build: 0.0,
-            tests: Some(cloud.spheres.len() as f64),
-            trace: each(|ray| cloud.plain(ray)),
-        },
-        Contestant {
-            name: "SphereTree, as listed",
-            ours: false,
-            rays: fewer,
-            build: listed.1,
-            tests: tests(&listed.0, fewer),
-            trace: each(|ray| listed.0.closest(ray, AHEAD)),
-        },
-        Contestant {
-            name: "SphereTree, sorted",
-            ours: true,
-            rays: all,
-            build: sorted.1,
-            tests: tests(&sorted.0, all),
-            trace: each(|ray| sorted.0.closest(ray, AHEAD)),
-        },
-        Contestant {
-            name: "Bvh",
-            ours: true,
-            rays: all,
-            build: fast.1,
-            tests: None,
-            trace: each(|ray| fast.0.closest(ray, AHEAD)),
-        },
-        Contestant {
-            name: "Bvh, batch",
-            ours: true,
-            rays: all,
-            build: fast.1,
-            tests: None,
-            trace: Box::new(|rays, hits| fast.0.closest_batch(rays, AHEAD, hits)),
-        },
+        contestant("plain loop", false, few, 0.0, looped, each(|ray| cloud.plain(ray))),
+        contestant(
+            "SphereTree, as listed",
+            false,
+            fewer,
+            listed.1,
+            tests(&listed.0, fewer),
+            each(|ray| listed.0.closest(ray, AHEAD)),
+        ),
+        contestant(
+            "SphereTree, sorted",
+            true,
+            all,
+            sorted.1,
+            tests(&sorted.0, all),
+            each(|ray| sorted.0.closest(ray, AHEAD)),
+        ),
+        contestant("Bvh", true, all, fast.1, None, each(|ray| fast.0.closest(ray, AHEAD))),
+        contestant("Bvh, batch", true, all, fast.1, None, batch),
     ]
 }
 
@@ -216,11 +200,12 @@ fn race(count: usize, contestants: &[Contestant], truth: &[Option<Hit>], effort:
     rows.collect()
 }
 
+const TOP: f64 = 36.0;
+const BOTTOM: f64 = 316.0;
+const KEY: f64 = BOTTOM + 58.0;
+
 /// Returns the diagram of the time for one ray against the number of spheres, both logarithmic.
 pub(super) fn plot(growth: &[Growth]) -> String {
-    const TOP: f64 = 36.0;
-    const BOTTOM: f64 = 316.0;
-    const KEY: f64 = BOTTOM + 58.0;
     let range = |values: &mut dyn Iterator<Item = f64>| {
         values.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x.log10()), high.max(x.log10())))
     };
@@ -228,65 +213,58 @@ pub(super) fn plot(growth: &[Growth]) -> String {
     let (y_low, y_high) = range(&mut growth.iter().map(|row| row.time.median));
     let (y_low, y_high) = (y_low.floor(), y_high.ceil());
     let x_high = x_high.max(x_low + 1.0);
-    let x = |spheres: f64| LEFT + 14.0 + (RIGHT - LEFT - 50.0) * (spheres.log10() - x_low) / (x_high - x_low);
+    let x =
+        |spheres: usize| LEFT + 14.0 + (RIGHT - LEFT - 50.0) * ((spheres as f64).log10() - x_low) / (x_high - x_low);
     let y = |time: f64| TOP + (BOTTOM - TOP) * (y_high - time.log10()) / (y_high - y_low);
-    let mut names: Vec<&str> = Vec::new();
+    let mut methods: Vec<(&str, bool)> = Vec::new();
     for row in growth {
-        if !names.contains(&row.method.as_str()) {
-            names.push(&row.method);
+        if !methods.iter().any(|(name, _)| *name == row.method) {
+            methods.push((&row.method, row.ours));
         }
     }
-    let mut svg = style("closest hit in a cloud of spheres", KEY + key_height(names.len()));
-    // Writing to a string cannot fail.
-    let mut decade = y_low;
-    while decade <= y_high {
-        #[expect(clippy::cast_possible_truncation, reason = "a whole number of decades")]
-        let (at, text) = (y(10f64.powf(decade)), power_of_ten(decade as i32));
-        let (end, baseline) = (LEFT - 5.0, at + 4.0);
-        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{at:.1}" x2="{RIGHT}" y2="{at:.1}"/>"#);
-        let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{baseline:.1}" text-anchor="end">{text}</text>"#);
-        decade += 1.0;
+    let mut svg = style("closest hit in a cloud of spheres", KEY + key_height(methods.len()));
+    #[expect(clippy::cast_possible_truncation, reason = "whole numbers of decades")]
+    for decade in y_low as i32..=y_high as i32 {
+        level(&mut svg, y(10f64.powf(decade.into())), power_of_ten(decade));
     }
-    let mut lines: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
-    let mut key_names = Vec::new();
-    for name in names {
-        let rows: Vec<&Growth> = growth.iter().filter(|row| row.method == name).collect();
-        let points: Vec<(f64, f64)> = rows.iter().map(|row| (x(row.spheres as f64), y(row.time.median))).collect();
-        let class = if rows[0].ours { "ours" } else { "other" };
-        if lines.is_empty() {
-            for (row, (at, _)) in rows.iter().zip(&points) {
-                let (under, spheres) = (BOTTOM + 17.0, row.spheres);
-                let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{TOP}" x2="{at:.1}" y2="{BOTTOM}"/>"#);
-                let _ = writeln!(
-                    svg,
-                    r#"<text class="small" x="{at:.1}" y="{under}" text-anchor="middle">{spheres}</text>"#
-                );
-            }
-        }
-        lines.push((class, points));
-        key_names.push((name.to_owned(), class.to_owned(), false));
+    for row in growth.iter().filter(|row| row.method == methods[0].0) {
+        upright(&mut svg, x(row.spheres), TOP, BOTTOM);
+        below(&mut svg, x(row.spheres), BOTTOM + 17.0, row.spheres);
     }
+    let lines = methods.iter().map(|&(name, ours)| {
+        let rows = growth.iter().filter(|row| row.method == name);
+        (class(ours), rows.map(|row| (x(row.spheres), y(row.time.median))).collect())
+    });
+    join(&mut svg, &lines.collect::<Vec<_>>());
+    axes(&mut svg, TOP, BOTTOM);
+    caption(&mut svg, BOTTOM + 36.0, "spheres");
+    upward(&mut svg, (TOP + BOTTOM) / 2.0, "nanoseconds a ray, one thread");
+    let names: Vec<_> = methods.iter().map(|&(name, ours)| (name.to_owned(), class(ours).to_owned(), false)).collect();
+    key(&mut svg, KEY, &names);
+    svg + "</svg>\n"
+}
+
+fn class(ours: bool) -> &'static str {
+    if ours { "ours" } else { "other" }
+}
+
+/// Draws the points of each method, joined, with its number at the last one.
+fn join(svg: &mut String, lines: &[(&str, Vec<(f64, f64)>)]) {
     let mut labels = Labels::new([LEFT, RIGHT, TOP, BOTTOM], lines.iter().flat_map(|(_, points)| points.clone()));
-    let mut numbers = String::new();
-    for (class, points) in &lines {
+    for (class, points) in lines {
         for pair in points.windows(2) {
             labels.avoid(pair[0], pair[1]);
         }
         let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        // Writing to a string cannot fail.
         let _ = writeln!(svg, r#"<polyline class="{class} line" points="{}"/>"#, path.join(" "));
         for &point in points {
             let _ = writeln!(svg, r#"<path class="{class}" d="{}"/>"#, shape(point, false));
         }
     }
     for (i, (_, points)) in lines.iter().enumerate() {
-        numbers += &labels.place(points[points.len() - 1], i + 1);
+        *svg += &labels.place(points[points.len() - 1], i + 1);
     }
-    svg.push_str(&numbers);
-    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {TOP} V {BOTTOM} H {RIGHT}"/>"#);
-    caption(&mut svg, BOTTOM + 36.0, "spheres");
-    upward(&mut svg, (TOP + BOTTOM) / 2.0, "nanoseconds a ray, one thread");
-    key(&mut svg, KEY, &key_names);
-    svg + "</svg>\n"
 }
 
 #[cfg(test)]

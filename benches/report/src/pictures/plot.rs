@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use super::results::{Group, Pictured};
 use crate::labels::Labels;
-use crate::svg::{LEFT, RIGHT, caption, escape, key, key_height, power_of_ten, shape, style, upward};
+use crate::svg::{
+    LEFT, RIGHT, axes, below, caption, escape, key, key_height, level, power_of_ten, shape, style, upright, upward,
+};
 
 /// A method's sums over a group of scenes.
 pub(crate) struct Total {
@@ -105,22 +107,20 @@ fn panel(svg: &mut String, top: f64, title: String, totals: &[Total]) {
     let _ = writeln!(svg, r#"<text x="{LEFT}" y="{:.1}" font-weight="bold">{}</text>"#, top - 7.0, escape(&title));
     let ticks = (-3..5).flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
     for tick in ticks.filter(|tick| (low..high).contains(&tick.log10())) {
-        let (at, end) = (y(tick), LEFT - 5.0);
-        let _ = writeln!(svg, r#"<line class="grid" x1="{LEFT}" y1="{at:.1}" x2="{RIGHT}" y2="{at:.1}"/>"#);
-        let _ = writeln!(svg, r#"<text class="small" x="{end}" y="{:.1}" text-anchor="end">{tick}</text>"#, at + 4.0);
+        level(svg, y(tick), tick);
     }
     let under = bottom + 15.0;
     for decade in [0, 2, 4, 6] {
-        let (at, text) = (x(10f64.powi(decade)), power_of_ten(decade));
-        let _ = writeln!(svg, r#"<line class="grid" x1="{at:.1}" y1="{top}" x2="{at:.1}" y2="{bottom}"/>"#);
-        let _ = writeln!(svg, r#"<text class="small" x="{at:.1}" y="{under}" text-anchor="middle">{text}</text>"#);
+        let at = x(10f64.powi(decade));
+        upright(svg, at, top, bottom);
+        below(svg, at, under, power_of_ten(decade));
     }
     let bound = totals.first().map_or(f64::NAN, |total| 3e6 / total.pixels as f64).ceil();
     let zero = x(0.0);
     let _ = writeln!(svg, r#"<text class="small" x="{zero}" y="{under}" text-anchor="middle">0 (&lt; {bound})</text>"#);
     let rule = LEFT + COLUMN;
     let _ = writeln!(svg, r#"<line class="axis" x1="{rule}" y1="{top}" x2="{rule}" y2="{bottom}"/>"#);
-    let _ = writeln!(svg, r#"<path class="axis" d="M {LEFT} {top} V {bottom} H {RIGHT}"/>"#);
+    axes(svg, top, bottom);
     let place = |total: &Total| (x(total.wrong_in_a_million()), y(total.speed()));
     let mut labels = Labels::new([LEFT + 1.0, RIGHT, top, bottom - 1.0], totals.iter().map(place));
     labels.avoid((rule, top), (rule, bottom));
