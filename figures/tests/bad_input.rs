@@ -74,7 +74,7 @@ fn a_bad_mesh_is_refused_with_its_line_and_reason() {
 #[test]
 fn a_bad_image_is_refused_with_its_byte_and_reason() {
     let arguments = ["convert", "image.ppm", "picture.ppm"];
-    check_files(include_str!("bad/ppm.txt"), "image.ppm", &arguments, 60);
+    check_files(include_str!("bad/ppm.txt"), "image.ppm", &arguments, 20);
 }
 
 #[test]
