@@ -12,6 +12,7 @@ use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Dyadic;
+use super::by_value::by_value;
 use super::radius::Bound;
 use super::vector::{FromDifference, Product};
 use super::wide::{Wide, quotient};
@@ -538,31 +539,7 @@ impl<const LIMBS: usize> Neg for Ball<LIMBS> {
     }
 }
 
-/// The same operators for values in place of references.
-macro_rules! by_value {
-    ($($Operator:ident $method:ident)*) => { $(
-        impl<const LIMBS: usize> $Operator for Ball<LIMBS> {
-            type Output = Self;
-            fn $method(self, other: Self) -> Self {
-                (&self).$method(&other)
-            }
-        }
-        impl<const LIMBS: usize> $Operator<&Self> for Ball<LIMBS> {
-            type Output = Self;
-            fn $method(self, other: &Self) -> Self {
-                (&self).$method(other)
-            }
-        }
-        impl<const LIMBS: usize> $Operator<Ball<LIMBS>> for &Ball<LIMBS> {
-            type Output = Ball<LIMBS>;
-            fn $method(self, other: Ball<LIMBS>) -> Ball<LIMBS> {
-                self.$method(&other)
-            }
-        }
-    )* };
-}
-
-by_value!(Add add Sub sub Mul mul Div div);
+by_value!(Ball: Add add Sub sub Mul mul Div div);
 
 impl<const LIMBS: usize> FromDifference for Ball<LIMBS> {
     fn from_difference(a: f64, b: f64) -> Self {

@@ -13,6 +13,7 @@
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
 
+use super::by_value::by_value;
 use super::enclosure::{Interval, Leading, add_with_carry, enclose, high, low, round, subtract_with_borrow};
 
 /// An exact number: an integer of at most `LIMBS` 64-bit limbs times a power of two, with a sign.
@@ -390,31 +391,7 @@ impl<const LIMBS: usize> Neg for Dyadic<LIMBS> {
     }
 }
 
-/// The same operators for values in place of references.
-macro_rules! by_value {
-    ($($Operator:ident $method:ident)*) => { $(
-        impl<const LIMBS: usize> $Operator for Dyadic<LIMBS> {
-            type Output = Self;
-            fn $method(self, other: Self) -> Self {
-                (&self).$method(&other)
-            }
-        }
-        impl<const LIMBS: usize> $Operator<&Self> for Dyadic<LIMBS> {
-            type Output = Self;
-            fn $method(self, other: &Self) -> Self {
-                (&self).$method(other)
-            }
-        }
-        impl<const LIMBS: usize> $Operator<Dyadic<LIMBS>> for &Dyadic<LIMBS> {
-            type Output = Dyadic<LIMBS>;
-            fn $method(self, other: Dyadic<LIMBS>) -> Dyadic<LIMBS> {
-                self.$method(&other)
-            }
-        }
-    )* };
-}
-
-by_value!(Add add Sub sub Mul mul);
+by_value!(Dyadic: Add add Sub sub Mul mul);
 
 impl<const LIMBS: usize> Ord for Dyadic<LIMBS> {
     fn cmp(&self, other: &Self) -> Ordering {

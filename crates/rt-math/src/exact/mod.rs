@@ -34,6 +34,7 @@
 //! ```
 
 mod ball;
+mod by_value;
 mod dispatch;
 mod dot;
 mod double_double;
