@@ -18,7 +18,7 @@
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
-use rt_math::exact::{U, power_of_two_near_inverse};
+use rt_math::exact::{U, mantissa_and_exponent, power_of_two_near_inverse};
 
 use crate::arctangent::arctangent_over_pi;
 use crate::double_word::{DoubleWord, fast_two_sum, split};
@@ -197,13 +197,7 @@ fn scale_if_tiny(share: f64, e: i32) -> f64 {
 
 /// Returns `(m, e)` with `v = m 2^e` and `|m|` in `1..2`; a zero stays as it is, with the least exponent.
 fn normalized(v: f64) -> (f64, i32) {
-    const TWO_POW_64: f64 = 18_446_744_073_709_551_616.0;
-    if v == 0.0 {
-        return (v, -1074);
-    }
-    let (v, shift) = if v.abs() < f64::MIN_POSITIVE { (v * TWO_POW_64, 64) } else { (v, 0) };
-    let field = (v.to_bits() >> 52 & 0x7ff) as i32;
-    (f64::from_bits(v.to_bits() & !(0x7ff << 52) | 1023 << 52), field - 1023 - shift)
+    if v == 0.0 { (v, -1074) } else { mantissa_and_exponent(v) }
 }
 
 /// Returns `v 2^e`, rounded once at most, for `e <= 200` and `|v|` in `2^-210 .. 2`, or zero.
