@@ -4,9 +4,12 @@
 //! Each test says so and passes where they are not installed.
 #![cfg(feature = "decode")]
 
+mod pictures;
+
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use pictures::{encode, pixmaps};
 use proptest::prelude::*;
 use rt_io::ppm::{self, Encoding};
 use rt_io::{Limits, Pixmap, decode_image, png};
@@ -35,24 +38,6 @@ fn netpbm(command: &str, input: &[u8]) -> Option<Vec<u8>> {
     Some(output.stdout)
 }
 
-fn encode(pixmap: &Pixmap, encoding: Encoding) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    ppm::write(pixmap, encoding, &mut bytes).unwrap();
-    bytes
-}
-
-/// Any picture of at most 40 x 6 pixels, with every `maxval`.
-fn pixmaps() -> impl Strategy<Value = Pixmap> {
-    let maxval = prop_oneof![
-        prop::sample::select(vec![1, 9, 10, 99, 100, 255, 256, 999, 1000, 9999, 10000, 65535]),
-        1..=65535_u16
-    ];
-    (1..=40_usize, 1..=6_usize, maxval).prop_flat_map(|(width, height, maxval)| {
-        prop::collection::vec(0..=maxval, 3 * width * height)
-            .prop_map(move |samples| Pixmap::new(width, height, maxval, samples).unwrap())
-    })
-}
-
 /// A picture with soft gradients, flat parts and hard edges, in colour or grey.
 fn picture(width: usize, height: usize, maxval: u16, grey: bool) -> Pixmap {
     let most = u64::from(maxval);
@@ -73,7 +58,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn written_files_are_those_of_pnmtopnm(pixmap in pixmaps()) {
+    fn written_files_are_those_of_pnmtopnm(pixmap in pixmaps(40, 6)) {
         let raw = encode(&pixmap, Encoding::Raw);
         let plain = encode(&pixmap, Encoding::Plain);
         for input in [&raw, &plain] {
@@ -87,7 +72,7 @@ proptest! {
     }
 
     #[test]
-    fn scaling_is_that_of_pamdepth(pixmap in pixmaps(), to in prop_oneof![Just(255), Just(65535), 1..=65535_u16]) {
+    fn scaling_is_that_of_pamdepth(pixmap in pixmaps(40, 6), to in prop_oneof![Just(255), Just(65535), 1..=65535_u16]) {
         let raw = encode(&pixmap, Encoding::Raw);
         if let Some(expected) = netpbm(&format!("pamdepth {to}"), &raw) {
             prop_assert_eq!(encode(&pixmap.scaled(to), Encoding::Raw), expected);
@@ -95,7 +80,7 @@ proptest! {
     }
 
     #[test]
-    fn written_png_files_are_read_back_by_pngtopnm(pixmap in pixmaps()) {
+    fn written_png_files_are_read_back_by_pngtopnm(pixmap in pixmaps(40, 6)) {
         let mut bytes = Vec::new();
         png::write(&pixmap, &mut bytes).unwrap();
         if let Some(found) = netpbm("pngtopnm", &bytes) {
