@@ -193,15 +193,6 @@ fn a_name_that_promises_what_is_not_written_is_refused_before_any_work() {
 }
 
 #[test]
-fn the_report_names_its_new_command() {
-    let folder = folder();
-    assert_eq!(
-        refusal(folder.path(), &["report", "--quick", "--out", "x"], "", 2),
-        "error: the report is a program of its own: `cargo run --release -p report -- --quick --out x`\n"
-    );
-}
-
-#[test]
 #[cfg(unix)]
 fn no_message_steers_the_terminal() {
     use std::ffi::OsStr;
