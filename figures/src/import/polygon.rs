@@ -21,7 +21,7 @@ use std::collections::VecDeque;
 
 use glam::{DVec3, Vec3Swizzles};
 use rt_geom::Triangle;
-use rt_math::exact::Dyadic;
+use rt_math::exact::{Dyadic, U};
 
 /// The corners of a polygon that is not convex, at most; it bounds the time that one face can take.
 pub(super) const MOST_CORNERS: usize = 1 << 17;
@@ -369,9 +369,6 @@ fn index(at: usize) -> u32 {
     u32::try_from(at).expect("a polygon comes from one line of a file")
 }
 
-/// `2^-53`, the unit roundoff.
-const U: f64 = f64::EPSILON / 2.0;
-
 /// Twice the area along an axis is a sum of at most 2^21 terms (a line has so many words), each a multiple of 2^-2148
 /// of at most 2^2051: 68 limbs. An orientation is one such term.
 type AreaInteger = Dyadic<68>;
@@ -479,11 +476,15 @@ mod tests {
         total(corners[1..].windows(2).map(|pair| area([corners[0], pair[0], pair[1]], axis)))
     }
 
+    fn cut(corners: &[DVec3]) -> (Outcome, Vec<Cut>) {
+        let mut triangles = Vec::new();
+        (Cutter::default().cut(corners, &mut triangles), triangles)
+    }
+
     /// Checks that a simple polygon is cut into triangles that all turn its way and meet side to side; such triangles
     /// cover it exactly once.
     fn check(corners: &[DVec3], what: &str) -> Vec<Cut> {
-        let mut triangles = Vec::new();
-        let outcome = Cutter::default().cut(corners, &mut triangles);
+        let (outcome, triangles) = cut(corners);
         let n = corners.len();
         assert_eq!(outcome, Outcome::Exact, "{what}: {corners:?}");
         assert_eq!(triangles.len(), n - 2, "{what}: {corners:?}");
@@ -653,9 +654,7 @@ mod tests {
                 crossed += 1;
                 // Whatever it is, it ends, with a triangle for each corner but two at most.
                 let corners: Vec<DVec3> = outline.iter().map(|at| DVec3::new(at[0], at[1], 0.0)).collect();
-                let mut triangles = Vec::new();
-                Cutter::default().cut(&corners, &mut triangles);
-                assert!(triangles.len() <= n - 2);
+                assert!(cut(&corners).1.len() <= n - 2);
                 continue;
             }
             simple += 1;
@@ -698,8 +697,8 @@ mod tests {
         for start in 0..10 {
             let corners: Vec<DVec3> =
                 (0..10).map(|at| outline[(start + at) % 10]).map(|[x, y]| DVec3::new(x, y, 0.25 * x)).collect();
-            let mut triangles = Vec::new();
-            assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact, "from {start}");
+            let (outcome, triangles) = cut(&corners);
+            assert_eq!(outcome, Outcome::Exact, "from {start}");
             let areas: Vec<Big> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 2)).collect();
             assert!(areas.iter().all(|area| *area > Big::ZERO), "from {start}: {triangles:?}");
             assert_eq!(total(areas.into_iter()), Big::from(2 * (81 - 9)), "from {start}");
@@ -711,8 +710,8 @@ mod tests {
         let corner = |x: f64, y: f64| DVec3::new(x, 0.0, y);
         let corners = [(0.0, 0.0), (0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (5.0, 5.0), (7.0, 5.0), (5.0, 5.0), (0.0, 5.0)];
         let corners = corners.map(|(x, y)| corner(x, y));
-        let mut triangles = Vec::new();
-        assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact);
+        let (outcome, triangles) = cut(&corners);
+        assert_eq!(outcome, Outcome::Exact);
         let areas: Vec<Big> = triangles.iter().map(|cut| area(cut.map(|at| corners[at as usize]), 1)).collect();
         assert_eq!(areas.len(), 2);
         assert_eq!(total(areas.into_iter()), Big::from(-50));
@@ -721,9 +720,8 @@ mod tests {
     #[test]
     fn a_polygon_that_crosses_itself_is_told() {
         let cut = |outline: &[(f64, f64)]| {
-            let corners: Vec<DVec3> = outline.iter().map(|&(x, y)| DVec3::new(x, y, 1.0)).collect();
-            let mut triangles = Vec::new();
-            (Cutter::default().cut(&corners, &mut triangles), triangles.len())
+            let (outcome, triangles) = cut(&outline.iter().map(|&(x, y)| DVec3::new(x, y, 1.0)).collect::<Vec<_>>());
+            (outcome, triangles.len())
         };
         // A bow tie with equal wings, one with unequal wings, and corners on a line.
         assert_eq!(cut(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]), (Outcome::Crossed, 2));
@@ -743,18 +741,15 @@ mod tests {
             ((0..100_000).map(|k| [f64::from(k.min(50_000)), f64::from((k - 50_000).max(0))]).collect(), "corner"),
         ] {
             let n = outline.len();
-            let corners = plane(outline);
-            let mut triangles = Vec::new();
-            assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact, "{what}");
-            assert_eq!(triangles.len(), n - 2, "{what}");
+            let (outcome, triangles) = cut(&plane(outline));
+            assert_eq!((outcome, triangles.len()), (Outcome::Exact, n - 2), "{what}");
         }
         let n = MOST_CORNERS + 1;
         let circle = (0..n).map(|k| (std::f64::consts::TAU * k as f64 / n as f64).sin_cos());
         let mut corners = plane(circle.map(|(y, x)| [x, y]).collect());
-        let mut triangles = Vec::new();
-        assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::Exact);
-        assert_eq!(triangles.len(), n - 2);
+        let (outcome, triangles) = cut(&corners);
+        assert_eq!((outcome, triangles.len()), (Outcome::Exact, n - 2));
         corners[1000] = DVec3::ZERO;
-        assert_eq!(Cutter::default().cut(&corners, &mut triangles), Outcome::TooLarge);
+        assert_eq!(cut(&corners), (Outcome::TooLarge, vec![]));
     }
 }
