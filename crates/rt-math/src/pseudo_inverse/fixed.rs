@@ -13,7 +13,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::PseudoInverse;
+use super::answer::PseudoInverse;
 use super::regular::Reciprocal;
 use crate::exact::vector::{cross, dot};
 use crate::exact::{Fixed, U, Window, power_of_two};

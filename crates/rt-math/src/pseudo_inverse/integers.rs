@@ -16,7 +16,7 @@ use core::cmp::Ordering;
 
 use glam::{DMat3, DVec3};
 
-use super::PseudoInverse;
+use super::answer::PseudoInverse;
 use crate::exact::Dyadic;
 use crate::exact::vector::{cross, dot};
 

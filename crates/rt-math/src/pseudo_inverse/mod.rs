@@ -10,6 +10,7 @@
 //!
 //! [`truncated`] is for the other function, which takes small singular values as zero.
 
+mod answer;
 mod fixed;
 mod integers;
 mod regular;
@@ -18,6 +19,7 @@ mod whole;
 
 use glam::{DMat3, DVec3};
 
+pub use answer::PseudoInverse;
 use truncated::Estimate;
 
 use crate::exact::{mantissa_and_exponent, power_of_two, scale};
@@ -73,15 +75,6 @@ macro_rules! cold {
             by_value(a, b, c, d, e, f, g, h, i)
         }
     };
-}
-
-/// A pseudo-inverse and the rank it was made for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PseudoInverse {
-    /// The pseudo-inverse itself.
-    pub matrix: DMat3,
-    /// Rank of the matrix that was inverted, 0 to 3.
-    pub rank: usize,
 }
 
 /// Returns the Moore-Penrose pseudo-inverse of `m` and the rank of `m`.

@@ -11,7 +11,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::PseudoInverse;
+use super::answer::PseudoInverse;
 use super::regular::{adjugate, determinant};
 use crate::exact::{U, mantissa_and_exponent, power_of_two, scale, two_prod};
 use crate::fma_dispatch;

@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::PseudoInverse;
+use super::answer::PseudoInverse;
 use crate::exact::{mantissa_and_exponent, scale};
 
 /// Entries are below two to this power in units of their common power of two.
