@@ -41,7 +41,7 @@ pub enum CameraError {
 
 impl Camera {
     /// Returns the camera for objects that come without one: it looks from the direction `from`, moves so that
-    /// everything is seen, and has a field of view of 28 degrees, so that things far from the middle are hardly
+    /// everything is seen, and has a field of view of 28 degrees, so that things far from the middle are little
     /// stretched.
     ///
     /// # Panics

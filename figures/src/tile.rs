@@ -2,7 +2,8 @@
 //! joined.
 //!
 //! Tile `i` of `n` has the rows from `⌊(i − 1) H / n⌋` up to `⌊i H / n⌋`. Its file is a PPM of these rows, or with
-//! transparency a PNG, with one comment that says where they belong. Joined, the rows are byte for byte those of the picture drawn in one go.
+//! transparency a PNG, with one comment that says where they belong. Joined, the rows are byte for byte those of the
+//! picture drawn in one run.
 
 use std::fmt;
 use std::fs::File;

@@ -106,8 +106,8 @@ fn root_ties(rows: usize) -> Class<3> {
     })
 }
 
-/// `t` is the difference of two doubles: the height of the origin and the radius. A ray aside by a hair hits a hair
-/// later.
+/// `t` is the difference of two doubles: the height of the origin and the radius. A ray that passes slightly off the
+/// center hits slightly later.
 fn sphere_ties(rows: usize) -> Class<10> {
     ties(rows, |r| {
         let (height, radius) = (r.within(4.0, 8.0), r.within(1.0, 2.0));
@@ -116,8 +116,8 @@ fn sphere_ties(rows: usize) -> Class<10> {
     })
 }
 
-/// `t` is the sum of two doubles: the heights of the origin and of the plane, which is tilted by an ulp in some cases,
-/// at a point with a weight of a hair.
+/// `t` is the sum of two doubles: the heights of the origin and of the plane, which is tilted by an ulp in some cases.
+/// One weight of the point hit is tiny.
 fn triangle_ties(rows: usize) -> Class<15> {
     ties(rows, |r| {
         let (height, depth) = (r.within(4.0, 8.0), r.within(1.0, 2.0));

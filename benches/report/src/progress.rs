@@ -1,4 +1,4 @@
-//! What is being measured, for a user who waits.
+//! Says what is being measured while it takes time.
 
 use std::io::{self, IsTerminal};
 

@@ -112,7 +112,7 @@ impl Shaded {
     }
 }
 
-/// Who knows the sides of a surface where rounding leaves them open.
+/// Decides the sides of a surface where rounding leaves them open.
 pub trait Sides {
     /// Whether the normal as given is on the side that the ray comes from, or the ray runs along the surface; `None` if
     /// that is not known.
@@ -190,7 +190,7 @@ pub fn phong(seen: &SurfacePoint, lights: &[PointLight]) -> Shaded {
     phong_with_sides(seen, lights, seen)
 }
 
-/// [`phong`] of a point whose sides somebody else knows: asked where rounding leaves a side open.
+/// [`phong`] of a point; where rounding leaves a side open, `sides` decides it.
 #[must_use]
 pub fn phong_with_sides(seen: &SurfacePoint, lights: &[PointLight], sides: &impl Sides) -> Shaded {
     let SurfacePoint { surface, material, errors, .. } = *seen;

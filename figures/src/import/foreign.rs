@@ -1,5 +1,5 @@
-//! What a file is by how it begins, or by the ending of its name: so that a format that is read is known without an
-//! ending, and one that is not read is refused by its own name and not as broken TOML.
+//! The format of a file, by its first bytes or by the ending of its name. So a format that is read is recognised without
+//! an ending, and one that is not read is refused by its own name and not as broken TOML.
 
 use std::path::Path;
 

@@ -26,7 +26,7 @@ pub struct Mesh {
     pub flat: usize,
     /// How many faces cross themselves, so that their triangles may overlap.
     pub crossed: usize,
-    /// What the file has that a mesh has not, such as `normals (vn)`.
+    /// What the file has and a mesh does not, such as `normals (vn)`.
     pub passed_over: Vec<&'static str>,
     /// Other warnings.
     pub notes: Vec<String>,

@@ -84,7 +84,7 @@ struct PdbReader {
 }
 
 impl PdbReader {
-    /// Reads an atom's line, and returns whether it is water that is told apart.
+    /// Reads an atom's line, and returns whether it is water, drawn small and pale.
     fn atom(&mut self, line: &[u8]) -> Result<bool, LineProblem> {
         let Options { scale, radius, colored, .. } = self.options;
         let column = |at: usize| -> Result<f64, LineProblem> {

@@ -1,4 +1,4 @@
-//! Spheres as they come from a file: how they are taken, their colours each once, and what is told about their names.
+//! Spheres as they come from a file: the options for reading them, their colours, each once, and notes on their names.
 
 use std::collections::HashMap;
 
@@ -77,7 +77,7 @@ pub(super) fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
 pub(super) struct Names(pub(super) Vec<(Vec<u8>, u8)>);
 
 impl Names {
-    /// How many are listed.
+    /// How many are listed in the note.
     const TOLD: usize = 8;
 
     /// Remembers a name. One more than is listed is enough, here and in each piece of a file, so that the list does not

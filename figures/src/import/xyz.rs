@@ -12,7 +12,7 @@
 //! next filling is read. So memory is the spheres and the buffer, and the result does not depend on threads.
 //!
 //! There are two ways to read a line: a quick one, which takes numbers where they stand, and `Columns::atom`, which
-//! takes the line apart and says what is wrong with it. The quick one gives up on every line that is not as expected.
+//! takes the line apart and says what is wrong with it. The quick one leaves to it every line that is not as expected.
 
 use std::io::Read;
 

@@ -24,7 +24,7 @@ pub(super) struct Sections {
 /// Cuts the elements out of a scene, in groups of about `group` bytes; nothing is checked.
 ///
 /// `None` if an element is written as a value (`light = [..]`): TOML refuses that beside tables of the same name, which
-/// only who parses the whole can see.
+/// only a parser of the whole text can see.
 pub(super) fn cut(text: &str, group: usize) -> Option<Sections> {
     let mut groups: Vec<Range<usize>> = Vec::new();
     // The last header, and which element it belongs to.

@@ -320,8 +320,8 @@ impl JpegFrame {
     }
 
     /// Reads a scan header (B.2.3) and notes what the scan sends. Each bit is sent once, from the highest down
-    /// (G.1.1.1.2), so that scans are few. Gives its
-    /// number of interleaved units, or of blocks if there is one component.
+    /// (G.1.1.1.2), so that scans are few. Returns the number of interleaved units, or of blocks if there is one
+    /// component.
     fn begin_scan(&mut self, header: &[u8]) -> Result<usize, DecodeError> {
         let Some((&count, rest)) = header.split_first() else { return Err(broken("a scan header")) };
         let (selectors, band) = rest.split_at_checked(2 * usize::from(count)).ok_or(broken("a scan header"))?;

@@ -34,7 +34,7 @@ fn square(m: &DMat3) -> f64 {
     m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()
 }
 
-/// What a glance at the singular values says.
+/// What estimates of the singular values say.
 pub(super) enum Estimate {
     /// Some are dropped: the answer.
     Dropped(PseudoInverse),
@@ -180,8 +180,8 @@ impl Singular {
     }
 }
 
-/// Makes the columns `p` and `q` of `g` orthogonal by a rotation, which `v` joins in; false if they are already, as far
-/// as it matters for the largest.
+/// Makes the columns `p` and `q` of `g` orthogonal by a rotation, which is applied to `v` too; false if they are
+/// orthogonal already, as far as it matters for the largest.
 fn rotate(g: &mut [DVec3; 3], v: &mut [DVec3; 3], p: usize, q: usize) -> bool {
     let (alpha, beta, gamma) = (g[p].length_squared(), g[q].length_squared(), g[p].dot(g[q]));
     if gamma.abs() <= 0.5 * f64::EPSILON * alpha.max(beta) {

@@ -1,9 +1,8 @@
 //! Lines of vertices and faces, read in parallel.
 //!
 //! A block of the file is cut into pieces of whole statements, and each piece is read by itself: vertices, and faces
-//! with their corners as they stand. [`ObjReader::append`] then takes the pieces in order. A statement of another kind, and
-//! one with which something is wrong, is only noted here: `append` hands it to [`ObjReader::statement`], which has the
-//! last word on every statement.
+//! with their corners as written. [`ObjReader::append`] then takes the pieces in order. Here a statement of another kind,
+//! or one with a fault, is only noted: `append` passes it to [`ObjReader::statement`], which decides every such case.
 
 use std::io::{self, Read};
 use std::ops::Range;
@@ -150,7 +149,7 @@ fn last_end(text: &[u8]) -> Option<usize> {
     })
 }
 
-/// Whether the line at the end of the text goes on in the next in no case: it has no backslash at its end.
+/// Whether the last line of the text has no backslash at its end, so that it surely does not continue.
 fn ends_plainly(text: &[u8]) -> bool {
     let line = text.strip_suffix(b"\n").unwrap_or(text);
     !line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\")
