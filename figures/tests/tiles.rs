@@ -1,37 +1,29 @@
 //! Tiles, joined, are byte for byte the picture drawn in one go; anything else is refused by name.
 
+mod program;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use oracle::files::folder;
-
-fn figures(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_figures")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn succeed(folder: &Path, arguments: &[&str]) -> Vec<u8> {
-    let output = figures(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    output.stdout
-}
+use program::stdout;
 
 /// What merging these files says; nothing may be written.
 fn refusal(folder: &Path, tiles: &[&str]) -> String {
-    let output = figures(folder, &[&["merge", "joined.ppm"], tiles].concat());
-    assert_eq!(output.status.code(), Some(1), "{tiles:?}");
+    let said = program::refusal(folder, &[&["merge", "joined.ppm"], tiles].concat(), "", 1);
     assert!(!folder.join("joined.ppm").exists(), "{tiles:?}");
-    String::from_utf8(output.stderr).unwrap()
+    said
 }
 
 fn draw(folder: &Path, figure: &str, tile: &str, out: &str, more: &[&str]) {
-    succeed(folder, &[&[figure, "--size", "40x30", "--tile", tile, "-o", out, "--quiet"], more].concat());
+    stdout(folder, &[&[figure, "--size", "40x30", "--tile", tile, "-o", out, "--quiet"], more].concat());
 }
 
 #[test]
 fn every_split_gives_the_bytes_of_the_single_run() {
     let folder = folder();
-    let whole = succeed(folder.path(), &["3", "--size", "40x30", "-o", "-"]);
+    let whole = stdout(folder.path(), &["3", "--size", "40x30", "-o", "-"]);
     for of in [1, 2, 3, 7, 30, 31] {
         let names: Vec<String> = (1..=of).rev().map(|number| format!("{number}-of-{of}.ppm")).collect();
         for (name, number) in names.iter().rev().zip(1..) {
@@ -43,9 +35,9 @@ fn every_split_gives_the_bytes_of_the_single_run() {
         let names: Vec<&str> =
             names.iter().map(String::as_str).filter(|name| folder.path().join(name).exists()).collect();
         assert_eq!(names.len(), of.min(30), "{of} tiles");
-        assert!(succeed(folder.path(), &[&["merge", "-"], &names[..]].concat()) == whole, "{of} tiles");
+        assert!(stdout(folder.path(), &[&["merge", "-"], &names[..]].concat()) == whole, "{of} tiles");
         assert!(
-            succeed(folder.path(), &[&["merge", "-", "--format", "png"], &names[..]].concat()).starts_with(b"\x89PNG")
+            stdout(folder.path(), &[&["merge", "-", "--format", "png"], &names[..]].concat()).starts_with(b"\x89PNG")
         );
     }
 }
@@ -54,17 +46,17 @@ fn every_split_gives_the_bytes_of_the_single_run() {
 fn deep_and_sampled_tiles_join_too() {
     let folder = folder();
     let more = ["--depth", "16", "--samples", "2"];
-    let whole = succeed(folder.path(), &[&["6", "--size", "40x30", "-o", "-"], &more[..]].concat());
+    let whole = stdout(folder.path(), &[&["6", "--size", "40x30", "-o", "-"], &more[..]].concat());
     for number in 1..=4 {
         draw(folder.path(), "6", &format!("{number}/4"), &format!("{number}.ppm"), &more);
     }
-    assert!(succeed(folder.path(), &["merge", "-", "4.ppm", "2.ppm", "1.ppm", "3.ppm"]) == whole);
+    assert!(stdout(folder.path(), &["merge", "-", "4.ppm", "2.ppm", "1.ppm", "3.ppm"]) == whole);
 }
 
 #[test]
 fn a_tile_goes_to_its_own_file_by_default() {
     let folder = folder();
-    succeed(folder.path(), &["1", "--size", "8x8", "--tile", "2/4"]);
+    stdout(folder.path(), &["1", "--size", "8x8", "--tile", "2/4"]);
     assert!(fs::read(folder.path().join("out/figure-1-2-of-4.ppm")).unwrap().starts_with(b"P6\n# figures "));
 }
 
@@ -79,8 +71,8 @@ fn gaps_overlaps_and_strangers_are_refused_by_name() {
     draw(at, "2", "2/3", "other-scene.ppm", &[]);
     draw(at, "3", "2/3", "other-samples.ppm", &["--samples", "2"]);
     draw(at, "3", "2/3", "other-depth.ppm", &["--depth", "16"]);
-    succeed(at, &["3", "--size", "44x30", "--tile", "2/3", "-o", "other-size.ppm", "--quiet"]);
-    succeed(at, &["3", "--size", "40x30", "-o", "whole.ppm", "--quiet"]);
+    stdout(at, &["3", "--size", "44x30", "--tile", "2/3", "-o", "other-size.ppm", "--quiet"]);
+    stdout(at, &["3", "--size", "40x30", "-o", "whole.ppm", "--quiet"]);
     fs::write(at.join("text.ppm"), "not a picture").unwrap();
     let cut = fs::read(at.join("t2.ppm")).unwrap();
     fs::write(at.join("cut.ppm"), &cut[..cut.len() / 2]).unwrap();
@@ -139,8 +131,8 @@ fn gnu_parallel_draws_sixteen_tiles() {
     assert!(status.success());
     let tiles: Vec<String> = numbers.iter().map(|number| format!("t{number}.ppm")).collect();
     let tiles: Vec<&str> = tiles.iter().map(String::as_str).collect();
-    let joined = succeed(folder.path(), &[&["merge", "-"], &tiles[..]].concat());
-    assert!(joined == succeed(folder.path(), &["6", "--size", "64x48", "-o", "-"]));
+    let joined = stdout(folder.path(), &[&["merge", "-"], &tiles[..]].concat());
+    assert!(joined == stdout(folder.path(), &["6", "--size", "64x48", "-o", "-"]));
     if let Ok(netpbm) = Command::new("pnmcat").arg("-tb").args(&tiles).current_dir(folder.path()).output() {
         assert!(joined == netpbm.stdout, "pnmcat joins them alike");
     }

@@ -14,22 +14,18 @@ pub(crate) fn inside() -> Vec<Method<12, 0>> {
     vec![
         Method::new("orientations f32", "the original report: three orientations", move |case| {
             verdict(orientations::<f32>(vector(case, 0), [3, 6, 9].map(|from| vector(case, from))))
-        })
-        .verdict_alone(),
+        }),
         Method::new("orientations", "the original report: three orientations", move |case| {
             let (point, vertices) = parts(case);
             verdict(orientations(point, vertices))
-        })
-        .verdict_alone(),
+        }),
         Method::new("barycentric", "Ericson, Real-Time Collision Detection, section 3.4", move |case| {
             let (point, vertices) = parts(case);
             verdict(barycentric(point, vertices))
-        })
-        .verdict_alone(),
+        }),
         Method::ours_on("ours", shapes, move |(point, triangle)| {
             verdict(inside_triangle(*point, triangle) != PointInTriangle::Outside)
-        })
-        .verdict_alone(),
+        }),
     ]
 }
 

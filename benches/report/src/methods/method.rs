@@ -54,7 +54,7 @@ impl<const M: usize, const N: usize> Method<M, N> {
                 }
             })
         });
-        Self { name, source, ours: false, has_values: true, prepare }
+        Self { name, source, ours: false, has_values: N > 0, prepare }
     }
 
     pub(super) fn ours(name: &'static str, method: impl Fn(&[f64; M]) -> Answer<N> + Copy + 'static) -> Self {
@@ -75,9 +75,10 @@ impl<const M: usize, const N: usize> Method<M, N> {
                 }
             })
         });
-        Self { name, source: "this project", ours: true, has_values: true, prepare }
+        Self { name, source: "this project", ours: true, has_values: N > 0, prepare }
     }
 
+    /// The method without its values.
     pub(super) fn verdict_alone(self) -> Self {
         Self { has_values: false, ..self }
     }

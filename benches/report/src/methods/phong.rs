@@ -17,16 +17,14 @@ pub(crate) const MATERIAL: Material = Material { ambient: 0.125, diffuse: 0.75, 
 /// Returns the methods that light a point.
 pub(crate) fn phong() -> Vec<Method<13, 0>> {
     vec![
-        Method::new("textbook f32", "Phong 1975: v/|v|, 2(n·l)n - l, repeated squaring", one_lamp::<f32>)
-            .verdict_alone(),
-        Method::new("textbook", "Phong 1975: v/|v|, 2(n·l)n - l, repeated squaring", one_lamp::<f64>).verdict_alone(),
-        Method::new("half vector", "Blinn 1977, exponent times 4: another highlight", half_vector).verdict_alone(),
-        Method::ours("ours, not certified", |case| byte(shaded(case).color.x)).verdict_alone(),
+        Method::new("textbook f32", "Phong 1975: v/|v|, 2(n·l)n - l, repeated squaring", one_lamp::<f32>),
+        Method::new("textbook", "Phong 1975: v/|v|, 2(n·l)n - l, repeated squaring", one_lamp::<f64>),
+        Method::new("half vector", "Blinn 1977, exponent times 4: another highlight", half_vector),
+        Method::ours("ours, not certified", |case| byte(shaded(case).color.x)),
         Method::ours("ours", |case| match certain(shaded(case)) {
             Some(byte) => Answer::without_values(byte),
             None => climb(case),
-        })
-        .verdict_alone(),
+        }),
     ]
 }
 

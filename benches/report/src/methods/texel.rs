@@ -24,22 +24,19 @@ static MAP: LazyLock<Texture> = LazyLock::new(|| {
 /// Returns the methods that find a texel.
 pub(crate) fn texel() -> Vec<Method<3, 0>> {
     vec![
-        Method::new("textbook f32", "½ + atan2(z, x)/2π, ½ - asin(y)/π, of a unit normal", textbook::<f32>)
-            .verdict_alone(),
-        Method::new("textbook", "½ + atan2(z, x)/2π, ½ - asin(y)/π, of a unit normal", textbook::<f64>).verdict_alone(),
+        Method::new("textbook f32", "½ + atan2(z, x)/2π, ½ - asin(y)/π, of a unit normal", textbook::<f32>),
+        Method::new("textbook", "½ + atan2(z, x)/2π, ½ - asin(y)/π, of a unit normal", textbook::<f64>),
         Method::ours("ours, not certified", |case| {
             let (u, v) = sphere_uv(dvec3(case, 0));
             number(MAP.nearest(u, v).x)
-        })
-        .verdict_alone(),
+        }),
         Method::ours("ours", |case| {
             let (coordinates, errors) = texture_uv_within(dvec3(case, 0), 0.0, true);
             match MAP.nearest_within(coordinates, errors) {
                 Some(color) => number(color.x),
                 None => climb(case),
             }
-        })
-        .verdict_alone(),
+        }),
     ]
 }
 
