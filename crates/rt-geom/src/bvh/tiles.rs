@@ -170,12 +170,11 @@ fn row_length(rays: &[Ray]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::Level;
     use glam::DVec3;
     use oracle::Random;
 
     use super::*;
-    use crate::simd::dispatch;
+    use crate::simd::baseline;
     use crate::{AHEAD, Sphere};
 
     fn picture(width: i32, height: i32) -> Vec<Ray> {
@@ -240,6 +239,11 @@ mod tests {
         }
     }
 
+    /// The tests of bounds that the rays cost as a tile, if they are one and these are at most `most`.
+    fn work(tree: &Bvh, rays: &[Ray], most: u32) -> Option<u32> {
+        attempt(baseline(), tree, rays, most)
+    }
+
     /// A tile costs a few tests, where its rays alone take several each; what is no tile is refused.
     #[test]
     fn coherent_rays_walk_together_and_others_do_not() {
@@ -254,12 +258,11 @@ mod tests {
             (0..64).map(ray).collect()
         };
         let (eye, ahead) = (DVec3::new(0.0, 0.0, -3.0), DVec3::new(0.05, 0.07, 1.0));
-        let try_rays = |rays: &[Ray], most| dispatch!(Level::new(), simd => attempt(simd, &tree, rays, most));
         let good = tile(eye, ahead, 1e-3);
-        let work = try_rays(&good, u32::MAX).unwrap();
+        let all = work(&tree, &good, u32::MAX).unwrap();
         let alone: usize = good.iter().map(|ray| tree.closest_counted(ray, AHEAD).1.nodes).sum();
-        assert!((3..60).contains(&work) && 4 * work as usize <= alone, "{work} {alone}");
-        assert_eq!(try_rays(&good, work / 2), None);
+        assert!((3..60).contains(&all) && 4 * all as usize <= alone, "{all} {alone}");
+        assert_eq!(work(&tree, &good, all / 2), None);
 
         let mut two_eyes = good.clone();
         two_eyes[63] = Ray::new(eye + DVec3::X, ahead).unwrap();
@@ -273,9 +276,9 @@ mod tests {
             ("far away", tile(eye * 1e3, ahead, 1e-3)),
         ];
         for (name, rays) in refused {
-            assert_eq!(try_rays(&rays, u32::MAX), None, "{name}");
+            assert_eq!(work(&tree, &rays, u32::MAX), None, "{name}");
         }
-        assert!(try_rays(&tile(eye, DVec3::new(0.0, -0.0, 1.0), 1e-3), u32::MAX).is_some(), "along an axis");
+        assert!(work(&tree, &tile(eye, DVec3::new(0.0, -0.0, 1.0), 1e-3), u32::MAX).is_some(), "along an axis");
     }
 
     /// A fan of rays in a plane across an axis, as a line scanner casts it: one component is zero in all of them, with
@@ -306,7 +309,7 @@ mod tests {
                 Ray::new(eye, direction).unwrap()
             };
             let rays: Vec<Ray> = (0..64).map(ray).collect();
-            tiles += usize::from(dispatch!(Level::new(), simd => attempt(simd, &tree, &rays, u32::MAX)).is_some());
+            tiles += usize::from(work(&tree, &rays, u32::MAX).is_some());
             let mut together = vec![None; rays.len()];
             tree.closest_batch(&rays, AHEAD, &mut together);
             let alone: Vec<Option<Hit>> = rays.iter().map(|ray| tree.closest(ray, AHEAD)).collect();
